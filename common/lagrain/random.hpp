@@ -1,0 +1,37 @@
+#pragma once
+/// @file
+/// Random numbers that are the same on every platform: the standard fixes the engine's output but
+/// not its distributions, so the distributions are ours.
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <random>
+
+namespace lagrain {
+
+/// Seeded generator. Same seed, same numbers, everywhere.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+
+  /// Uniform in [0, 1).
+  double uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
+
+  /// Uniform in [low, high).
+  double uniform(double low, double high) { return low + (high - low) * uniform(); }
+
+  /// Uniform integer in [0, count); the bias is below count / 2^53.
+  int below(int count) { return static_cast<int>(uniform() * count); }
+
+  /// Normal with mean 0 and standard deviation 1 (Box and Muller, Ann. Math. Stat. 29 (1958) 610).
+  double normal() {
+    const double radius = std::sqrt(-2 * std::log(1 - uniform()));
+    return radius * std::cos(2 * std::numbers::pi * uniform());
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+}  // namespace lagrain

@@ -1,0 +1,50 @@
+#pragma once
+/// @file
+/// What every dynamic regular triangulation offers, whatever its dimension. Dimension 2 is built in
+/// dim2; `common` only names the interface, so that the neighbourhood is written once.
+
+#include <lagrain/vec.hpp>
+
+#include <Eigen/Core>
+
+#include <concepts>
+#include <cstdint>
+#include <span>
+
+namespace lagrain {
+
+/// Regular (weighted Delaunay) triangulation of moving sites; specialised per dimension.
+template <int Dim>
+class Triangulation;
+
+/// What an update had to do, rung by rung of the ladder. The counts of several updates add up.
+struct UpdateReport {
+  std::int64_t flips = 0;       ///< local flips
+  std::int64_t extracted = 0;   ///< sites taken out before a move because a simplex would have inverted
+  std::int64_t unstuck = 0;     ///< sites taken out because the flips could not finish
+  std::int64_t reinserted = 0;  ///< sites put back: extracted, unstuck, or hidden and now visible
+  std::int64_t rebuilds = 0;    ///< builds from nothing, the last rung
+
+  UpdateReport& operator+=(const UpdateReport& other) {
+    flips += other.flips;
+    extracted += other.extracted;
+    unstuck += other.unstuck;
+    reinserted += other.reinserted;
+    rebuilds += other.rebuilds;
+    return *this;
+  }
+};
+
+/// A triangulation that is exactly regular for the sites it was last given.
+template <class T, int Dim>
+concept RegularTriangulation =
+    requires(T t, const T ct, std::span<const int> moved, const Columns<Dim>& sites,
+             const Eigen::VectorXd& weights, void (*visit)(int, int)) {
+      t.build(sites, weights);
+      { t.move(moved, sites, weights) } -> std::same_as<UpdateReport>;
+      ct.for_each_edge(visit);
+      { ct.hidden() } -> std::convertible_to<std::span<const int>>;
+      { ct.size() } -> std::convertible_to<int>;
+    };
+
+}  // namespace lagrain
