@@ -16,7 +16,8 @@ double clamped_contact_time(double damping_ratio) {
   const double zeta = damping_ratio;
   if (zeta < 1) {
     const double w = std::sqrt((1 - zeta) * (1 + zeta));
-    // The angle is pi - 2 asin(zeta) = 2 acos(zeta): sin and cos of it are 2 zeta w and 2 zeta^2 - 1.
+    // The angle is pi - 2 asin(zeta) = 2 acos(zeta): sin and cos of it are 2 zeta w and 2 zeta^2
+    // - 1.
     return w > 0 ? 2 * std::acos(zeta) / w : 2;
   }
   const double w = std::sqrt((zeta - 1) * (zeta + 1));

@@ -19,8 +19,9 @@ class Triangulation;
 
 /// What an update had to do, rung by rung of the ladder. The counts of several updates add up.
 struct UpdateReport {
-  std::int64_t flips = 0;       ///< local flips
-  std::int64_t extracted = 0;   ///< sites taken out before a move because a simplex would have inverted
+  std::int64_t flips = 0;  ///< local flips
+  std::int64_t extracted =
+      0;  ///< sites taken out before a move because a simplex would have inverted
   std::int64_t unstuck = 0;     ///< sites taken out because the flips could not finish
   std::int64_t reinserted = 0;  ///< sites put back: extracted, unstuck, or hidden and now visible
   std::int64_t rebuilds = 0;    ///< builds from nothing, the last rung
@@ -37,14 +38,14 @@ struct UpdateReport {
 
 /// A triangulation that is exactly regular for the sites it was last given.
 template <class T, int Dim>
-concept RegularTriangulation =
-    requires(T t, const T ct, std::span<const int> moved, const Columns<Dim>& sites,
-             const Eigen::VectorXd& weights, void (*visit)(int, int)) {
-      t.build(sites, weights);
-      { t.move(moved, sites, weights) } -> std::same_as<UpdateReport>;
-      ct.for_each_edge(visit);
-      { ct.hidden() } -> std::convertible_to<std::span<const int>>;
-      { ct.size() } -> std::convertible_to<int>;
-    };
+concept RegularTriangulation = requires(T t, const T ct, std::span<const int> moved,
+                                        const Columns<Dim>& sites, const Eigen::VectorXd& weights,
+                                        void (*visit)(int, int)) {
+  t.build(sites, weights);
+  { t.move(moved, sites, weights) } -> std::same_as<UpdateReport>;
+  ct.for_each_edge(visit);
+  { ct.hidden() } -> std::convertible_to<std::span<const int>>;
+  { ct.size() } -> std::convertible_to<int>;
+};
 
 }  // namespace lagrain

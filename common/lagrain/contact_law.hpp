@@ -1,0 +1,51 @@
+#pragma once
+/// @file
+/// What a contact law is. A law is a small immutable aggregate of SI numbers; laws compose by
+/// holding another law.
+
+#include <lagrain/needs.hpp>
+#include <lagrain/touch.hpp>
+
+#include <concepts>
+
+namespace lagrain {
+
+/// History of a contact without history.
+struct NoMemory {
+  bool operator==(const NoMemory&) const = default;
+};
+
+/// A law of contact in Dim dimensions.
+///
+/// `respond` advances the memory by the time step and returns the force; called again with time
+/// step 0 it returns the same force and changes nothing. From `contact_time`, the duration of a
+/// free collision, the time step is chosen; `natural_time` is 1 / omega0 of the spring, and
+/// `largest_damping_ratio` the strongest dashpot, in units of 2 m_eff omega0.
+template <class L, int Dim>
+concept ContactLaw = requires(const L law, const Touch<Dim>& touch,
+                              typename L::template Memory<Dim>& memory,
+                              const typename L::template Memory<Dim>& past, double x) {
+  { L::needs } -> std::convertible_to<Needs>;
+  { law.respond(touch, memory, x) } -> std::same_as<Response<Dim>>;    // time step [s]
+  { law.elastic_energy(touch, past) } -> std::convertible_to<double>;  // [J]
+  // effective mass [kg], effective radius [m]
+  { law.contact_time(x, x) } -> std::convertible_to<double>;
+  { law.natural_time(x, x) } -> std::convertible_to<double>;
+  { law.largest_damping_ratio() } -> std::convertible_to<double>;
+  { law.conservative() } -> std::convertible_to<bool>;
+}
+&&std::default_initializable<typename L::template Memory<Dim>>;
+
+/// Against tangential forces a contact point is lighter than along the normal, because the grains
+/// also turn: by 3.5 for spheres, 3 for discs. We take the larger.
+inline constexpr double kTangentialMobility = 3.5;
+
+/// A law along the normal alone: also tells its tangent stiffness, which friction laws build on.
+template <class L, int Dim>
+concept NormalLaw = ContactLaw<L, Dim> && requires(const L law, const Touch<Dim>& touch) {
+  { law.normal_force(touch) } -> std::convertible_to<double>;   // [N], never negative
+  { law.elastic_force(touch) } -> std::convertible_to<double>;  // [N], without the dashpot
+  { law.stiffness_at(touch) } -> std::convertible_to<double>;   // [N/m]
+};
+
+}  // namespace lagrain

@@ -1,0 +1,101 @@
+#pragma once
+/// @file
+/// Coulomb friction with an elastic tangential spring, over any normal law.
+
+#include <lagrain/contact_law.hpp>
+#include <lagrain/hertz.hpp>
+#include <lagrain/hooke.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lagrain {
+
+/// Friction that holds: a tangential spring xi stretched by the slip, cut at Coulomb's limit.
+///
+///     f_t = -(kt xi + gt slip),  |f_t| <= mu f_n,
+///     kt = ratio x normal stiffness,  gt = 2 zeta_t sqrt(kt m_eff)
+///
+/// While it slides the spring alone carries the limit, |kt xi| = mu f_n: a large dashpot can then
+/// neither store energy in the spring nor change the impulse of a grazing impact.
+///
+/// Source: Cundall & Strack, Geotechnique 29 (1979) 47.
+template <class Normal>
+struct CundallStrack {
+  static constexpr Needs needs{.spin = true, .memory = true};
+
+  /// Stretch of the tangential spring [m], in the contact plane.
+  template <int Dim>
+  struct Memory {
+    Vec<Dim> stretch = Vec<Dim>::Zero();
+    bool operator==(const Memory&) const = default;
+  };
+
+  Normal normal;
+  double friction = 0;                  ///< mu [-]
+  double stiffness_ratio = 2.0 / 7.0;   ///< kt / kn [-]
+  double tangential_damping_ratio = 0;  ///< zeta_t [-]
+
+  template <int Dim>
+  Response<Dim> respond(const Touch<Dim>& touch, Memory<Dim>& memory, double time_step) const {
+    Response<Dim> response;
+    const double fn = normal.normal_force(touch);
+    response.dashpot_loss = (fn - normal.elastic_force(touch)) * touch.closing * time_step;
+
+    const double kt = stiffness_ratio * normal.stiffness_at(touch);
+    const double gt = 2 * tangential_damping_ratio * std::sqrt(kt * touch.effective_mass);
+    Vec<Dim> xi = turned_into_plane<Dim>(memory.stretch, touch.normal);
+    const double stored = 0.5 * kt * xi.squaredNorm();
+    xi += time_step * touch.slip;
+
+    Vec<Dim> ft = -(kt * xi + gt * touch.slip);
+    const double limit = friction * fn;
+    const double squared = ft.squaredNorm();
+    if (squared > limit * limit) {
+      ft *= limit / std::sqrt(squared);
+      xi = -ft / kt;
+    }
+    memory.stretch = xi;
+    response.force = fn * touch.normal + ft;
+    response.friction_loss =
+        -ft.dot(touch.slip) * time_step - (0.5 * kt * xi.squaredNorm() - stored);
+    return response;
+  }
+
+  template <int Dim>
+  double elastic_energy(const Touch<Dim>& touch, const Memory<Dim>& memory) const {
+    return normal.elastic_energy(touch, NoMemory{}) +
+           0.5 * stiffness_ratio * normal.stiffness_at(touch) * memory.stretch.squaredNorm();
+  }
+
+  double contact_time(double effective_mass, double effective_radius) const {
+    return normal.contact_time(effective_mass, effective_radius);
+  }
+  double natural_time(double effective_mass, double effective_radius) const {
+    return normal.natural_time(effective_mass, effective_radius);
+  }
+  double largest_damping_ratio() const {
+    return std::max(normal.largest_damping_ratio(),
+                    kTangentialMobility * tangential_damping_ratio * std::sqrt(stiffness_ratio));
+  }
+  bool conservative() const { return false; }
+
+ private:
+  /// The stretch follows the contact as it turns: the part along the new normal is dropped and the
+  /// length kept.
+  template <int Dim>
+  static Vec<Dim> turned_into_plane(const Vec<Dim>& stretch, const Vec<Dim>& n) {
+    const double before = stretch.squaredNorm();
+    if (before == 0) return stretch;
+    const Vec<Dim> flat = stretch - stretch.dot(n) * n;
+    const double after = flat.squaredNorm();
+    if (after == 0) return flat;
+    return std::sqrt(before / after) * flat;
+  }
+};
+
+static_assert(ContactLaw<CundallStrack<LinearSpring>, 2> &&
+              ContactLaw<CundallStrack<LinearSpring>, 3>);
+static_assert(ContactLaw<CundallStrack<Hertz>, 2> && ContactLaw<CundallStrack<Hertz>, 3>);
+
+}  // namespace lagrain

@@ -1,0 +1,126 @@
+#pragma once
+/// @file
+/// The grains as a structure of arrays.
+
+#include <lagrain/check.hpp>
+#include <lagrain/needs.hpp>
+#include <lagrain/vec.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace lagrain {
+
+/// Rotation of N grains: present only where a law has friction.
+template <int Dim>
+struct SpinState {
+  Columns<kSpinDim<Dim>> omega;     ///< angular velocity [rad/s], counter-clockwise positive
+  Columns<kSpinDim<Dim>> torque;    ///< [N m]
+  Eigen::VectorXd inverse_inertia;  ///< [1/(kg m^2)], 0 for a pinned grain
+};
+
+struct NoSpin {};
+
+/// N discs (Dim = 2) or spheres (Dim = 3). A frictionless `Grains` has no member `omega`: it is
+/// absent, not zero.
+///
+/// A pinned grain has inverse mass and inverse inertia 0: forces on it are measured, it stays.
+template <int Dim, Needs needs>
+struct Grains : std::conditional_t<needs.spin, SpinState<Dim>, NoSpin> {
+  Columns<Dim> position;           ///< Dim x N [m]
+  Columns<Dim> velocity;           ///< Dim x N [m/s]
+  Columns<Dim> force;              ///< Dim x N [N]
+  Eigen::VectorXd radius;          ///< N [m], positive
+  Eigen::VectorXd mass;            ///< N [kg], positive
+  Eigen::VectorXd inverse_mass;    ///< N [1/kg], 0 for a pinned grain
+  std::vector<std::uint8_t> kind;  ///< N: row of the table of laws; empty while there is one kind
+
+  int size() const { return static_cast<int>(radius.size()); }
+};
+
+/// What a grain is made from, before it joins `Grains`.
+template <int Dim>
+struct Grain {
+  Vec<Dim> position = Vec<Dim>::Zero();       ///< [m]
+  Vec<Dim> velocity = Vec<Dim>::Zero();       ///< [m/s]
+  SpinVec<Dim> omega = SpinVec<Dim>::Zero();  ///< [rad/s]; ignored where nothing spins
+  double radius = 0;                          ///< [m]
+  double mass = 0;                            ///< [kg]
+  int kind = 0;                               ///< row of the table of laws
+  bool pinned = false;
+};
+
+/// Volume [m^3] of a disc of the given depth [m] (Dim = 2: a rod) or of a sphere (depth unused).
+template <int Dim>
+double grain_volume(double radius, double depth = 1) {
+  if constexpr (Dim == 2) {
+    return std::numbers::pi * radius * radius * depth;
+  } else {
+    return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+  }
+}
+
+/// Moment of inertia [kg m^2] of a solid disc (m r^2 / 2) or sphere (2 m r^2 / 5).
+template <int Dim>
+double grain_inertia(double mass, double radius) {
+  return (Dim == 2 ? 0.5 : 0.4) * mass * radius * radius;
+}
+
+/// Lays grains out as arrays, forces zero.
+/// @throws ContractError if a radius or mass is not positive and finite, or a number is NaN.
+template <int Dim, Needs needs>
+Grains<Dim, needs> make_grains(const std::vector<Grain<Dim>>& list) {
+  const auto n = static_cast<Eigen::Index>(list.size());
+  Grains<Dim, needs> grains;
+  grains.position.resize(Dim, n);
+  grains.velocity.resize(Dim, n);
+  grains.force.setZero(Dim, n);
+  grains.radius.resize(n);
+  grains.mass.resize(n);
+  grains.inverse_mass.resize(n);
+  if constexpr (needs.spin) {
+    grains.omega.resize(kSpinDim<Dim>, n);
+    grains.torque.setZero(kSpinDim<Dim>, n);
+    grains.inverse_inertia.resize(n);
+  }
+  bool one_kind = true;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Grain<Dim>& grain = list[static_cast<std::size_t>(i)];
+    const std::string name = "grain " + std::to_string(i) + ": ";
+    LAGRAIN_EXPECTS(grain.radius > 0 && std::isfinite(grain.radius),
+                    name + "radius " + std::to_string(grain.radius));
+    LAGRAIN_EXPECTS(grain.mass > 0 && std::isfinite(grain.mass),
+                    name + "mass " + std::to_string(grain.mass));
+    LAGRAIN_EXPECTS(grain.position.allFinite() && grain.velocity.allFinite(),
+                    name + "position or velocity is not a number");
+    grains.position.col(i) = grain.position;
+    grains.velocity.col(i) = grain.velocity;
+    grains.radius[i] = grain.radius;
+    grains.mass[i] = grain.mass;
+    grains.inverse_mass[i] = grain.pinned ? 0 : 1 / grain.mass;
+    if constexpr (needs.spin) {
+      grains.omega.col(i) = grain.omega;
+      grains.inverse_inertia[i] =
+          grain.pinned ? 0 : 1 / grain_inertia<Dim>(grain.mass, grain.radius);
+    }
+    one_kind = one_kind && grain.kind == 0;
+  }
+  if (!one_kind) {
+    for (const Grain<Dim>& grain : list)
+      grains.kind.push_back(static_cast<std::uint8_t>(grain.kind));
+  }
+  return grains;
+}
+
+/// Bytes of state that one grain costs in this model; a table of several kinds adds one byte.
+template <int Dim, Needs needs>
+constexpr std::size_t bytes_per_grain() {
+  return sizeof(double) * (3 * Dim + 3 + (needs.spin ? 2 * kSpinDim<Dim> + 1 : 0));
+}
+
+}  // namespace lagrain

@@ -1,0 +1,88 @@
+#pragma once
+/// @file
+/// Hertz contact with viscous damping.
+
+#include <lagrain/contact_law.hpp>
+#include <lagrain/restitution.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace lagrain {
+
+/// Hertz's law for elastic spheres with a dashpot, never attractive.
+///
+///     f = max(0, K delta^(3/2) + sqrt(5) zeta sqrt(m_eff K) delta^(1/4) closing),
+///     K = (4/3) E* sqrt(R_eff)
+///
+/// With the dashpot of Tsuji, Tanaka & Ishida, Powder Technology 71 (1992) 239, the restitution
+/// does not depend on the speed. Measured along s = (4/5) delta^(5/4) the motion is that of a
+/// linear damped spring (Antypov & Elliott, EPL 94 (2011) 50004), and the force vanishes at the
+/// same moment in both pictures, so zeta is the same function of the restitution as in
+/// `LinearSpring`.
+///
+/// Discs use the same formula (with their radii): the contact line of two cylinders has no finite
+/// stiffness of its own, so in the plane this is a model, not elasticity.
+struct Hertz {
+  static constexpr Needs needs{};
+  template <int Dim>
+  using Memory = NoMemory;
+
+  double modulus = 0;        ///< effective Young's modulus E* [Pa]; (1 - nu^2)/E adds over the pair
+  double damping_ratio = 0;  ///< zeta [-]
+  double impact_speed = 0;   ///< the fastest collision expected [m/s]: sets the contact time
+
+  static Hertz with_restitution(double modulus, double restitution, double impact_speed) {
+    return {modulus, damping_ratio_for(restitution), impact_speed};
+  }
+
+  /// K [N/m^(3/2)] for an effective radius [m].
+  double coefficient(double effective_radius) const {
+    return 4.0 / 3.0 * modulus * std::sqrt(effective_radius);
+  }
+
+  template <int Dim>
+  double stiffness_at(const Touch<Dim>& touch) const {
+    return 1.5 * coefficient(touch.effective_radius) * std::sqrt(touch.overlap);
+  }
+  template <int Dim>
+  double elastic_force(const Touch<Dim>& touch) const {
+    return coefficient(touch.effective_radius) * touch.overlap * std::sqrt(touch.overlap);
+  }
+  template <int Dim>
+  double normal_force(const Touch<Dim>& touch) const {
+    const double k = coefficient(touch.effective_radius);
+    const double root = std::sqrt(touch.overlap);
+    const double damping =
+        std::sqrt(5.0) * damping_ratio * std::sqrt(touch.effective_mass * k * root);
+    return std::max(0.0, k * touch.overlap * root + damping * touch.closing);
+  }
+  template <int Dim>
+  Response<Dim> respond(const Touch<Dim>& touch, NoMemory&, double time_step) const {
+    const double f = normal_force(touch);
+    return {f * touch.normal, (f - elastic_force(touch)) * touch.closing * time_step, 0};
+  }
+  template <int Dim>
+  double elastic_energy(const Touch<Dim>& touch, const NoMemory&) const {
+    return 0.4 * elastic_force(touch) * touch.overlap;
+  }
+
+  /// The undamped collision at `impact_speed` lasts 2.9432 delta_max / v, with
+  /// delta_max = (5 m v^2 / (4 K))^(2/5) (Johnson, Contact Mechanics, 1985, section 11.4); a linear
+  /// spring of that duration has 1 / omega0 = duration / pi.
+  double natural_time(double effective_mass, double effective_radius) const {
+    const double deepest = std::pow(
+        1.25 * effective_mass * impact_speed * impact_speed / coefficient(effective_radius), 0.4);
+    return 2.9432 * deepest / impact_speed / std::numbers::pi;
+  }
+  double contact_time(double effective_mass, double effective_radius) const {
+    return clamped_contact_time(damping_ratio) * natural_time(effective_mass, effective_radius);
+  }
+  double largest_damping_ratio() const { return damping_ratio; }
+  bool conservative() const { return damping_ratio == 0; }
+};
+
+static_assert(NormalLaw<Hertz, 2> && NormalLaw<Hertz, 3>);
+
+}  // namespace lagrain

@@ -1,0 +1,71 @@
+#pragma once
+/// @file
+/// Linear spring and dashpot.
+
+#include <lagrain/contact_law.hpp>
+#include <lagrain/restitution.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lagrain {
+
+/// Linear spring and dashpot: force along the normal, never attractive.
+///
+///     f = max(0, k delta + 2 zeta sqrt(k m_eff) closing)
+///
+/// The damping follows the effective mass, so every pair has the same restitution whatever its
+/// sizes. Because we cut the force at zero (no cohesion), zeta comes from the cut relation
+/// (restitution.hpp): the restitution that a scene names is the one that it gets.
+///
+/// Source: Cundall & Strack, Geotechnique 29 (1979) 47; Schwager & Poeschel, Granular Matter 9
+/// (2007) 465.
+struct LinearSpring {
+  static constexpr Needs needs{};
+  template <int Dim>
+  using Memory = NoMemory;
+
+  double stiffness = 0;      ///< k [N/m]
+  double damping_ratio = 0;  ///< zeta [-]
+
+  /// @param stiffness [N/m] @param restitution of a head-on impact, in (0, 1]
+  static LinearSpring with_restitution(double stiffness, double restitution) {
+    return {stiffness, damping_ratio_for(restitution)};
+  }
+
+  template <int Dim>
+  double stiffness_at(const Touch<Dim>&) const {
+    return stiffness;
+  }
+  template <int Dim>
+  double elastic_force(const Touch<Dim>& touch) const {
+    return stiffness * touch.overlap;
+  }
+  template <int Dim>
+  double normal_force(const Touch<Dim>& touch) const {
+    const double damping = 2 * damping_ratio * std::sqrt(stiffness * touch.effective_mass);
+    return std::max(0.0, elastic_force(touch) + damping * touch.closing);
+  }
+  template <int Dim>
+  Response<Dim> respond(const Touch<Dim>& touch, NoMemory&, double time_step) const {
+    const double f = normal_force(touch);
+    return {f * touch.normal, (f - elastic_force(touch)) * touch.closing * time_step, 0};
+  }
+  template <int Dim>
+  double elastic_energy(const Touch<Dim>& touch, const NoMemory&) const {
+    return 0.5 * stiffness * touch.overlap * touch.overlap;
+  }
+
+  double natural_time(double effective_mass, double) const {
+    return std::sqrt(effective_mass / stiffness);
+  }
+  double contact_time(double effective_mass, double effective_radius) const {
+    return clamped_contact_time(damping_ratio) * natural_time(effective_mass, effective_radius);
+  }
+  double largest_damping_ratio() const { return damping_ratio; }
+  bool conservative() const { return damping_ratio == 0; }
+};
+
+static_assert(NormalLaw<LinearSpring, 2> && NormalLaw<LinearSpring, 3>);
+
+}  // namespace lagrain

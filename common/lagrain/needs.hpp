@@ -1,0 +1,13 @@
+#pragma once
+/// @file
+/// What a model asks of the simulation, so that a scene carries only the state it needs.
+
+namespace lagrain {
+
+/// What a contact law asks for. All false: frictionless, and neither spin nor memory is stored.
+struct Needs {
+  bool spin = false;    ///< grains carry angular velocity, torque and inertia
+  bool memory = false;  ///< contacts carry history from step to step
+};
+
+}  // namespace lagrain

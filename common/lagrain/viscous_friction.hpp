@@ -1,0 +1,65 @@
+#pragma once
+/// @file
+/// Regularised Coulomb friction without memory, over any normal law.
+
+#include <lagrain/contact_law.hpp>
+#include <lagrain/hertz.hpp>
+#include <lagrain/hooke.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lagrain {
+
+/// Friction of a viscous film that cannot exceed Coulomb's limit:
+///
+///     f_t = -min(g |slip|, mu f_n) slip / |slip|,  g = 2 zeta_t sqrt(k m_eff)
+///
+/// It needs no memory, and the price is creep: a loaded contact at rest slides slowly. For flows it
+/// is enough; a pile that must stand needs CundallStrack.
+///
+/// Source: Haff & Werner, Powder Technology 48 (1986) 239.
+template <class Normal>
+struct ViscousFriction {
+  static constexpr Needs needs{.spin = true, .memory = false};
+  template <int Dim>
+  using Memory = NoMemory;
+
+  Normal normal;
+  double friction = 0;                    ///< mu [-]
+  double tangential_damping_ratio = 0.5;  ///< zeta_t [-]
+
+  template <int Dim>
+  Response<Dim> respond(const Touch<Dim>& touch, NoMemory&, double time_step) const {
+    const double fn = normal.normal_force(touch);
+    const double g =
+        2 * tangential_damping_ratio * std::sqrt(normal.stiffness_at(touch) * touch.effective_mass);
+    const double speed = touch.slip.norm();
+    const double coefficient = g * speed <= friction * fn ? g : friction * fn / speed;
+    return {fn * touch.normal - coefficient * touch.slip,
+            (fn - normal.elastic_force(touch)) * touch.closing * time_step,
+            coefficient * speed * speed * time_step};
+  }
+
+  template <int Dim>
+  double elastic_energy(const Touch<Dim>& touch, const NoMemory& none) const {
+    return normal.elastic_energy(touch, none);
+  }
+
+  double contact_time(double effective_mass, double effective_radius) const {
+    return normal.contact_time(effective_mass, effective_radius);
+  }
+  double natural_time(double effective_mass, double effective_radius) const {
+    return normal.natural_time(effective_mass, effective_radius);
+  }
+  double largest_damping_ratio() const {
+    return std::max(normal.largest_damping_ratio(), kTangentialMobility * tangential_damping_ratio);
+  }
+  bool conservative() const { return false; }
+};
+
+static_assert(ContactLaw<ViscousFriction<LinearSpring>, 2> &&
+              ContactLaw<ViscousFriction<LinearSpring>, 3>);
+static_assert(ContactLaw<ViscousFriction<Hertz>, 2> && ContactLaw<ViscousFriction<Hertz>, 3>);
+
+}  // namespace lagrain
