@@ -327,13 +327,28 @@ bool Triangulation<2>::extract_inverted(std::span<const int> moved, bool sweep) 
     }
   }
 
+  /// What is left of inverted_, and the triangles made since.
+  const auto look_again = [&](std::size_t first) {
+    cover_.swap(inverted_);
+    inverted_.clear();
+    const int epoch = next_epoch();
+    const auto look_once = [&](int triangle) {
+      if (!topology_.alive(triangle) || topology_.mark(triangle) == epoch) return;
+      topology_.set_mark(triangle, epoch);
+      look(triangle);
+    };
+    for (const int triangle : cover_) look_once(triangle);
+    for (std::size_t k = first; k < touched_.size(); ++k) look_once(touched_[k]);
+  };
+
+  bool may_drop = true;
   while (!inverted_.empty()) {
     const auto hard = std::partition(inverted_.begin(), inverted_.end(), [&](int triangle) {
-      return crossed_hull_edge(triangle) != Topology2::kNone;
+      return may_drop && crossed_hull_edge(triangle) != Topology2::kNone;
     });
     if (hard == inverted_.end()) {
-      // Nothing else left. Dropping one can put the inner vertex of another on the hull.
-      std::erase_if(inverted_, [&](int triangle) {
+      const std::size_t first = touched_.size();
+      const bool all = std::all_of(inverted_.begin(), inverted_.end(), [&](int triangle) {
         const int corner = crossed_hull_edge(triangle);
         if (corner == Topology2::kNone) return false;
         touched_.push_back(triangle);
@@ -341,11 +356,16 @@ bool Triangulation<2>::extract_inverted(std::span<const int> moved, bool sweep) 
         flip(corner);
         return true;
       });
+      if (all) return true;
+      // One drop put the inner vertex of the next on the hull. Take the drops back.
+      may_drop = false;
+      close_hull(first, before_.data());
+      look_again(first);
       continue;
     }
     choose_cover(std::span<const int>(hard, inverted_.end()));
     inverted_.erase(hard, inverted_.end());
-    std::size_t first = touched_.size();
+    const std::size_t first = touched_.size();
     for (const int site : cover_) {
       const int hint = finite_neighbour(site);
       const std::size_t start = touched_.size();
@@ -354,16 +374,7 @@ bool Triangulation<2>::extract_inverted(std::span<const int> moved, bool sweep) 
       ++report_.extracted;
       close_hull(start, before_.data());
     }
-    cover_.assign(inverted_.begin(), inverted_.end());
-    inverted_.clear();
-    const int epoch = next_epoch();
-    const auto look_once = [&](int triangle) {
-      if (!topology_.alive(triangle) || topology_.mark(triangle) == epoch) return;
-      topology_.set_mark(triangle, epoch);
-      look(triangle);
-    };
-    for (; first < touched_.size(); ++first) look_once(touched_[first]);
-    for (const int triangle : cover_) look_once(triangle);
+    look_again(first);
   }
   return true;
 }
