@@ -68,7 +68,8 @@ class Occupied {
   }
 
   double cell_;
-  std::unordered_map<std::uint64_t, std::vector<int>> cells_;  // a key shared by accident only costs
+  std::unordered_map<std::uint64_t, std::vector<int>>
+      cells_;  // a key shared by accident only costs
 };
 
 template <int Dim>
@@ -146,8 +147,8 @@ class Placer {
       const double overlap = (p.radius + other.radius - (p.position - other.position).norm()) /
                              std::min(p.radius, other.radius);
       if (overlap > limit && !(p.pinned && other.pinned)) {
-        throw scene_.error(key, "overlaps grain[" + std::to_string(j) + "] by " +
-                                    percent(overlap) + shortest(100 * limit) + " %)");
+        throw scene_.error(key, "overlaps grain[" + std::to_string(j) + "] by " + percent(overlap) +
+                                    shortest(100 * limit) + " %)");
       }
       return true;
     });

@@ -52,7 +52,8 @@ std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, AnyNeighbourhood<Dim
       return detail::make_viscous_run(scene, std::move(placement), std::move(neighbourhood));
     case FrictionModel::elastic:
       return detail::make_elastic_run(scene, std::move(placement), std::move(neighbourhood));
-    case FrictionModel::none: break;
+    case FrictionModel::none:
+      break;
   }
   return detail::make_frictionless_run(scene, std::move(placement), std::move(neighbourhood));
 }
@@ -74,9 +75,12 @@ std::string normal_text(NormalModel normal) {
 
 std::string friction_text(FrictionModel friction) {
   switch (friction) {
-    case FrictionModel::none: return "no friction";
-    case FrictionModel::viscous: return "viscous friction cut at Coulomb's limit";
-    case FrictionModel::elastic: return "Coulomb friction with elastic memory";
+    case FrictionModel::none:
+      return "no friction";
+    case FrictionModel::viscous:
+      return "viscous friction cut at Coulomb's limit";
+    case FrictionModel::elastic:
+      return "Coulomb friction with elastic memory";
   }
   return {};
 }

@@ -89,8 +89,11 @@ std::string shown(const toml::node& node) {
   if (const auto* b = node.as_boolean()) return b->get() ? "true" : "false";
   if (const auto* a = node.as_array()) {
     std::string text = "[";
-    for (const toml::node& item : *a) text += (text.size() > 1 ? ", " : "") + shown(item);
-    return text + "]";
+    for (const toml::node& item : *a) {
+      if (text.size() > 1) text += ", ";
+      text += shown(item);
+    }
+    return text += ']';
   }
   if (node.is_table()) return "a table";
   return "a date or time";
@@ -144,17 +147,17 @@ std::string described(const Kind& kind, Range range) {
   return text;
 }
 
-double quantity(const File& file, const toml::node& node, const std::string& path,
-                const Kind& kind, Range range) {
+double quantity(const File& file, const toml::node& node, const std::string& path, const Kind& kind,
+                Range range) {
   double value = 0;
   if (const auto* s = node.as_string()) {
     Quantity q;
     try {
       q = parse_quantity(s->get());
     } catch (const std::invalid_argument& reason) {
-      file.fail(node, path,
-                "expected " + described(kind, range) + ", got " + shown(node) + ": " +
-                    reason.what());
+      file.fail(
+          node, path,
+          "expected " + described(kind, range) + ", got " + shown(node) + ": " + reason.what());
     }
     if (q.unit != kind.unit) file.expected(node, path, described(kind, range));
     value = q.value;
@@ -165,7 +168,8 @@ double quantity(const File& file, const toml::node& node, const std::string& pat
   } else {
     file.expected(node, path, described(kind, range));
   }
-  const bool in_range = range == Range::any || value > 0 || (range != Range::positive && value == 0);
+  const bool in_range =
+      range == Range::any || value > 0 || (range != Range::positive && value == 0);
   if (!std::isfinite(value) || !in_range) file.expected(node, path, described(kind, range));
   return value;
 }
@@ -261,14 +265,15 @@ class Section {
     if (node == nullptr) return fallback;
     return text_of_node(key, *node);
   }
-  std::string text(std::string_view key) {
-    return text_of_node(key, require(key, "text"));
-  }
+  std::string text(std::string_view key) { return text_of_node(key, require(key, "text")); }
   template <class E, std::size_t N>
   E word(std::string_view key, const std::array<Word<E>, N>& words, std::optional<E> fallback) {
     std::string all;
     for (std::size_t k = 0; k < N; ++k) {
-      all += (k == 0 ? "" : k + 1 == N ? " or " : ", ") + ("\"" + std::string(words[k].text) + "\"");
+      all += (k == 0       ? ""
+              : k + 1 == N ? " or "
+                           : ", ") +
+             ("\"" + std::string(words[k].text) + "\"");
     }
     const toml::node* node = fallback ? find(key) : &require(key, all);
     if (node == nullptr) return *fallback;
@@ -510,9 +515,8 @@ class Reader {
         top_.word<NeighbourhoodModel>("neighbourhood", kNeighbourhoodWords, scene_.neighbourhood);
     scene_.largest_overlap =
         top_.number("largest_overlap", kNumber, Range::positive, scene_.largest_overlap);
-    scene_.largest_initial_overlap = top_.number("largest_initial_overlap", kNumber,
-                                                 Range::not_negative,
-                                                 scene_.largest_initial_overlap);
+    scene_.largest_initial_overlap = top_.number(
+        "largest_initial_overlap", kNumber, Range::not_negative, scene_.largest_initial_overlap);
     scene_.audit = top_.flag("audit", false);
     if (scene_.audit) {
       scene_.audit_every = static_cast<int>(top_.integer("audit_every", 1, scene_.audit_every));
@@ -527,8 +531,7 @@ class Reader {
       throw SceneError(file_.name + ": materials: missing; expected at least one [materials.NAME]");
     }
     if (table->size() > 255) {
-      file_.fail(*table, "materials",
-                 "expected at most 255, got " + std::to_string(table->size()));
+      file_.fail(*table, "materials", "expected at most 255, got " + std::to_string(table->size()));
     }
     std::vector<std::pair<toml::source_position, std::string>> order;
     for (const auto& [key, node] : *table) {
@@ -696,8 +699,7 @@ class Reader {
       }
     } else {
       s.finish();
-      file_.fail(s.table(), s.path("point"),
-                 "missing; expected point and normal, or from and to");
+      file_.fail(s.table(), s.path("point"), "missing; expected point and normal, or from and to");
     }
     wall.kind = kind;
     if (const toml::table* motion = s.sub_table("motion")) read_motion(s, *motion, wall);
@@ -786,7 +788,9 @@ std::string whole_file(const std::filesystem::path& file) {
 }
 
 /// Scenes are called by their file's name in messages, without the folder.
-std::string called(const std::filesystem::path& file) { return file.filename().string(); }
+std::string called(const std::filesystem::path& file) {
+  return file.filename().string();
+}
 
 int dimension_of(const toml::table& root, const std::string& name) {
   const toml::node* node = root.get("dimension");
@@ -810,11 +814,14 @@ std::string number(double value) {
 template <class V>
 std::string list(const V& v) {
   std::string text = "[";
-  for (const double x : v) text += (text.size() > 1 ? ", " : "") + number(x);
-  return text + "]";
+  for (const double x : v) {
+    if (text.size() > 1) text += ", ";
+    text += number(x);
+  }
+  return text += ']';
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') {
@@ -891,10 +898,18 @@ std::string shortest(double value) {
   return {buffer.data(), failure == std::errc{} ? end : buffer.data()};
 }
 
-std::string_view name_of(NormalModel model) { return text_of(kNormalWords, model); }
-std::string_view name_of(FrictionModel model) { return text_of(kFrictionWords, model); }
-std::string_view name_of(IntegratorModel model) { return text_of(kIntegratorWords, model); }
-std::string_view name_of(NeighbourhoodModel model) { return text_of(kNeighbourhoodWords, model); }
+std::string_view name_of(NormalModel model) {
+  return text_of(kNormalWords, model);
+}
+std::string_view name_of(FrictionModel model) {
+  return text_of(kFrictionWords, model);
+}
+std::string_view name_of(IntegratorModel model) {
+  return text_of(kIntegratorWords, model);
+}
+std::string_view name_of(NeighbourhoodModel model) {
+  return text_of(kNeighbourhoodWords, model);
+}
 
 int scene_dimension(const std::filesystem::path& file) {
   return dimension_of(parsed(whole_file(file), called(file)), called(file));
@@ -924,49 +939,48 @@ std::string to_toml(const Scene<Dim>& scene) {
     out += "\n";
   };
   const auto material = [&](int index) {
-    line("material", quoted(scene.materials[static_cast<std::size_t>(index)].name));
+    line("material", in_quotes(scene.materials[static_cast<std::size_t>(index)].name));
   };
-  line("title", quoted(scene.title));
+  line("title", in_quotes(scene.title));
   line("dimension", std::to_string(Dim));
   line("seed", std::to_string(scene.seed));
   line("duration", number(scene.duration), "s");
   if (scene.time_step.seconds > 0) {
     line("time_step", number(scene.time_step.seconds), "s");
   } else {
-    line("time_step", quoted(number(scene.time_step.fraction_of_contact) + " contact"));
+    line("time_step", in_quotes(number(scene.time_step.fraction_of_contact) + " contact"));
   }
   line("gravity", list(scene.gravity), "m/s^2");
   if (Dim == 2) line("depth", number(scene.depth), "m");
-  line("normal", quoted(name_of(scene.normal)));
-  line("friction", quoted(name_of(scene.friction)));
-  line("integrator", quoted(name_of(scene.integrator)));
-  line("neighbourhood", quoted(name_of(scene.neighbourhood)));
+  line("normal", in_quotes(name_of(scene.normal)));
+  line("friction", in_quotes(name_of(scene.friction)));
+  line("integrator", in_quotes(name_of(scene.integrator)));
+  line("neighbourhood", in_quotes(name_of(scene.neighbourhood)));
   line("largest_overlap", number(scene.largest_overlap), "of the smaller radius");
-  line("largest_initial_overlap", number(scene.largest_initial_overlap),
-       "of the smaller radius");
+  line("largest_initial_overlap", number(scene.largest_initial_overlap), "of the smaller radius");
   line("audit", scene.audit ? "true" : "false");
   if (scene.audit) line("audit_every", std::to_string(scene.audit_every), "steps");
 
   out += "\n[law]\n";
   write_law(out, scene.law, scene.normal, scene.friction);
   for (const Material& m : scene.materials) {
-    out += "\n[materials." + quoted(m.name) + "]\n";
+    out += "\n[materials." + in_quotes(m.name) + "]\n";
     if (m.density > 0) line("density", number(m.density), "kg/m^3");
   }
   for (const PairLaw& pair : scene.pairs) {
     out += "\n[[pair]]\n";
-    line("between", "[" + quoted(scene.materials[static_cast<std::size_t>(pair.a)].name) + ", " +
-                        quoted(scene.materials[static_cast<std::size_t>(pair.b)].name) + "]");
+    line("between", "[" + in_quotes(scene.materials[static_cast<std::size_t>(pair.a)].name) + ", " +
+                        in_quotes(scene.materials[static_cast<std::size_t>(pair.b)].name) + "]");
     write_law(out, pair.law, scene.normal, scene.friction);
   }
   for (const Fill<Dim>& fill : scene.fills) {
     out += "\n[[fill]]\n";
-    line("name", quoted(fill.name));
+    line("name", in_quotes(fill.name));
     material(fill.material);
     if (fill.count) line("count", std::to_string(*fill.count));
     line("radius", radius_text(fill.radius), "m");
     line("region", "{ low = " + list(fill.low) + ", high = " + list(fill.high) + " }", "m");
-    line("arrangement", quoted(text_of(kArrangementWords, fill.arrangement)));
+    line("arrangement", in_quotes(text_of(kArrangementWords, fill.arrangement)));
     line("velocity",
          fill.random_speed > 0 ? "{ random = " + number(fill.random_speed) + " }"
                                : list(fill.velocity),
@@ -988,7 +1002,7 @@ std::string to_toml(const Scene<Dim>& scene) {
   }
   for (const Wall<Dim>& wall : scene.walls) {
     out += "\n[[wall]]\n";
-    line("name", quoted(wall.name));
+    line("name", in_quotes(wall.name));
     material(wall.kind);
     if (const auto* plane = std::get_if<HalfSpace<Dim>>(&wall.shape)) {
       line("point", list(wall.home), "m");

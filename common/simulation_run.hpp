@@ -141,14 +141,17 @@ std::unique_ptr<Run<Dim>> make_run_with(const Scene<Dim>& scene, Placement<Dim> 
         std::move(walls), scales, std::move(neighbourhood));
   };
   switch (scene.integrator) {
-    case IntegratorModel::symplectic_euler: return finish(SymplecticEuler{});
+    case IntegratorModel::symplectic_euler:
+      return finish(SymplecticEuler{});
     case IntegratorModel::fourth_order:
       // With friction the scene reader has refused it already.
       if constexpr (!Law::needs.spin) return finish(ForestRuth{});
       break;
-    case IntegratorModel::velocity_verlet: return finish(VelocityVerlet<Dim>{});
+    case IntegratorModel::velocity_verlet:
+      return finish(VelocityVerlet<Dim>{});
   }
-  throw scene.error("integrator", "\"fourth order\" is for forces without loss: it needs friction = \"none\"");
+  throw scene.error("integrator",
+                    "\"fourth order\" is for forces without loss: it needs friction = \"none\"");
 }
 
 /// The models of one friction law, in one file each.

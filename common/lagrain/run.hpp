@@ -31,10 +31,10 @@ struct ContactRecord {
 
 /// What a model stores.
 struct ModelSize {
-  std::size_t per_grain = 0;         ///< bytes of state of a grain
-  std::size_t per_near_pair = 0;     ///< bytes of a pair in the near list, memory included
-  std::size_t spin_per_grain = 0;    ///< of the first: spin, torque, inertia
-  std::size_t memory_per_pair = 0;   ///< of the second: memory
+  std::size_t per_grain = 0;        ///< bytes of state of a grain
+  std::size_t per_near_pair = 0;    ///< bytes of a pair in the near list, memory included
+  std::size_t spin_per_grain = 0;   ///< of the first: spin, torque, inertia
+  std::size_t memory_per_pair = 0;  ///< of the second: memory
 };
 
 /// A simulation behind a plain interface: one virtual call per step, none within. The types
@@ -57,7 +57,7 @@ class Run {
   bool finished() const { return steps() >= steps_planned_; }
 
   virtual std::int64_t steps() const = 0;
-  virtual double time() const = 0;            ///< [s]
+  virtual double time() const = 0;  ///< [s]
   virtual TimeScales time_scales() const = 0;
   virtual const Columns<Dim>& positions() const = 0;   ///< Dim x N [m]
   virtual const Columns<Dim>& velocities() const = 0;  ///< Dim x N [m/s]
@@ -77,10 +77,10 @@ class Run {
   int count() const { return static_cast<int>(radii().size()); }
   /// As it runs: the time step is in seconds.
   const Scene<Dim>& scene() const { return scene_; }
-  double time_step() const { return scene_.time_step.seconds; }        ///< [s]
-  const std::vector<int>& materials() const { return materials_; }    ///< N, see Placement
-  const std::vector<int>& groups() const { return groups_; }          ///< N, see Placement
-  const Ledger& start() const { return start_; }                       ///< the ledger at time 0
+  double time_step() const { return scene_.time_step.seconds; }          ///< [s]
+  const std::vector<int>& materials() const { return materials_; }       ///< N, see Placement
+  const std::vector<int>& groups() const { return groups_; }             ///< N, see Placement
+  const Ledger& start() const { return start_; }                         ///< the ledger at time 0
   double energy_residual() const { return residual(ledger(), start_); }  ///< [J]
   const ContactAudit<Dim>& audit() const { return audit_; }
 
