@@ -297,9 +297,14 @@ int Triangulation<2>::crossed_hull_edge(int triangle) const {
     if (found != Topology2::kNone) return Topology2::kNone;
     found = corner;
   }
-  if (found == Topology2::kNone || topology_.on_hull(topology_.vertex(found)))
-    return Topology2::kNone;
-  return found;
+  if (found == Topology2::kNone) return found;
+  const Site2 &a = sites_[index(topology_.source(found))],
+              &b = sites_[index(topology_.target(found))];
+  const Site2& c = sites_[index(topology_.vertex(found))];
+  const double from_a = (c.x - a.x) * (b.x - a.x) + (c.y - a.y) * (b.y - a.y);
+  const double from_b = (c.x - b.x) * (a.x - b.x) + (c.y - b.y) * (a.y - b.y);
+  const bool between = from_a > 0 && from_b > 0;
+  return between && !topology_.on_hull(topology_.vertex(found)) ? found : Topology2::kNone;
 }
 
 /// Takes out moved sites, at their old places, until no triangle is inverted at the new ones.
@@ -329,7 +334,7 @@ bool Triangulation<2>::extract_inverted(std::span<const int> moved, bool sweep) 
 
   /// What is left of inverted_, and the triangles made since.
   const auto look_again = [&](std::size_t first) {
-    cover_.swap(inverted_);
+    pending_.swap(inverted_);
     inverted_.clear();
     const int epoch = next_epoch();
     const auto look_once = [&](int triangle) {
@@ -337,35 +342,11 @@ bool Triangulation<2>::extract_inverted(std::span<const int> moved, bool sweep) 
       topology_.set_mark(triangle, epoch);
       look(triangle);
     };
-    for (const int triangle : cover_) look_once(triangle);
+    for (const int triangle : pending_) look_once(triangle);
     for (std::size_t k = first; k < touched_.size(); ++k) look_once(touched_[k]);
   };
 
-  bool may_drop = true;
-  while (!inverted_.empty()) {
-    const auto hard = std::partition(inverted_.begin(), inverted_.end(), [&](int triangle) {
-      return may_drop && crossed_hull_edge(triangle) != Topology2::kNone;
-    });
-    if (hard == inverted_.end()) {
-      const std::size_t first = touched_.size();
-      const bool all = std::all_of(inverted_.begin(), inverted_.end(), [&](int triangle) {
-        const int corner = crossed_hull_edge(triangle);
-        if (corner == Topology2::kNone) return false;
-        touched_.push_back(triangle);
-        touched_.push_back(topology_.twin(corner) >> 2);
-        flip(corner);
-        return true;
-      });
-      if (all) return true;
-      // One drop put the inner vertex of the next on the hull. Take the drops back.
-      may_drop = false;
-      close_hull(first, before_.data());
-      look_again(first);
-      continue;
-    }
-    choose_cover(std::span<const int>(hard, inverted_.end()));
-    inverted_.erase(hard, inverted_.end());
-    const std::size_t first = touched_.size();
+  const auto take_out_cover = [&] {
     for (const int site : cover_) {
       const int hint = finite_neighbour(site);
       const std::size_t start = touched_.size();
@@ -374,30 +355,71 @@ bool Triangulation<2>::extract_inverted(std::span<const int> moved, bool sweep) 
       ++report_.extracted;
       close_hull(start, before_.data());
     }
+    return true;
+  };
+
+  for (bool may_drop = true;;) {
+    const std::size_t first = touched_.size();
+    const auto hard = std::partition(inverted_.begin(), inverted_.end(), [&](int triangle) {
+      return may_drop && crossed_hull_edge(triangle) != Topology2::kNone;
+    });
+    if (hard == inverted_.end()) {
+      const bool all = std::all_of(inverted_.begin(), inverted_.end(), [&](int triangle) {
+        const int corner = crossed_hull_edge(triangle);
+        if (corner == Topology2::kNone) return false;
+        touched_.push_back(triangle);
+        touched_.push_back(topology_.twin(corner) >> 2);
+        flip(corner);
+        return true;
+      });
+      cover_.clear();
+      if (hull_touched_) choose_folded();
+      if (all && cover_.empty()) return true;
+      // One drop put the inner vertex of the next on the hull, or the hull is folded. The next
+      // sites leave at the old places, so take the drops back.
+      may_drop = false;
+      close_hull(first, before_.data());
+    } else {
+      choose_cover(std::span<const int>(hard, inverted_.end()));
+    }
+    if (!take_out_cover()) return false;
     look_again(first);
   }
-  return true;
+}
+
+/// Moved sites at which the hull turns right by more than 90 degrees, or their neighbours along the
+/// hull. Such a hull may cross itself, and flips would not unfold it. (The measure may be rough: a
+/// hull that slips through fails the last test.)
+void Triangulation<2>::choose_folded() {
+  topology_.for_each_corner(Topology2::kInfinite, [&](int corner) {
+    const int last = topology_.source(corner), here = topology_.target(corner);
+    const int next = topology_.target(topology_.turn(corner));
+    const Site2 &a = sites_[index(last)], &p = sites_[index(here)], &b = sites_[index(next)];
+    if ((p.x - a.x) * (b.x - p.x) + (p.y - a.y) * (b.y - p.y) > 0) return;
+    if (orientation(a, p, b) < 0) return;  // the corners at infinity go round clockwise
+    for (const int id : {here, last, next}) {
+      if (!moved_place(id)) continue;
+      if (std::find(cover_.begin(), cover_.end(), id) == cover_.end()) cover_.push_back(id);
+      break;
+    }
+  });
 }
 
 /// A small set of moved sites with at least one in each of the triangles: where there is a choice,
 /// the site that occurs most often, as one that strayed far inverts several.
 void Triangulation<2>::choose_cover(std::span<const int> triangles) {
-  const auto moved = [&](int id) {
-    return id >= 0 && (sites_[index(id)].x != before_[index(id)].x ||
-                       sites_[index(id)].y != before_[index(id)].y);
-  };
   constexpr int kChosen = -1;
   cover_.clear();
   for (const int triangle : triangles) {
     for (const int id : corners_of(triangle)) {
-      if (moved(id)) ++site_count_[index(id)];
+      if (moved_place(id)) ++site_count_[index(id)];
     }
   }
   for (const int triangle : triangles) {
     int best = -1;
     bool covered = false;
     for (const int id : corners_of(triangle)) {
-      if (!moved(id)) continue;
+      if (!moved_place(id)) continue;
       if (site_count_[index(id)] == kChosen) covered = true;
       if (best < 0 || site_count_[index(id)] > site_count_[index(best)]) best = id;
     }

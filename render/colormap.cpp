@@ -14,8 +14,8 @@ namespace {
 // cividis: Nunez, Anderton and Renslow, PLoS ONE 13 (2018) e0199239, dedicated to the public domain
 //          (CC0).
 // blue_red: computed for lagrain with the method of Moreland, ISVC 2009 (LNCS 5876), 92: linear in
-//          (magnitude, saturation, hue) of CIELAB between (59, 76, 192), a neutral grey of magnitude
-//          88 and (180, 4, 38), with the hue spun towards the grey.
+//          (magnitude, saturation, hue) of CIELAB between (59, 76, 192), a neutral grey of
+//          magnitude 88 and (180, 4, 38), with the hue spun towards the grey.
 constexpr std::string_view kViridis =
     "44015444025645045745055946075a46085c460a5d460b5e470d60470e61471063471164471365481467"
     "48166848176948186a481a6c481b6d481c6e481d6f481f70482071482173482374482475482576482677"
@@ -82,7 +82,9 @@ constexpr std::string_view kBlueRed =
 static_assert(kViridis.size() == 6 * 256 && kCividis.size() == 6 * 256 &&
               kBlueRed.size() == 6 * 256);
 
-constexpr int digit(char c) { return c <= '9' ? c - '0' : c - 'a' + 10; }
+constexpr int digit(char c) {
+  return c <= '9' ? c - '0' : c - 'a' + 10;
+}
 
 std::uint8_t byte(double value) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));

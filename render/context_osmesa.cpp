@@ -56,6 +56,8 @@ class OsMesa final : public GlContext {
 
 }  // namespace
 
-std::unique_ptr<GlContext> make_context() { return std::make_unique<OsMesa>(); }
+std::unique_ptr<GlContext> make_context() {
+  return std::make_unique<OsMesa>();
+}
 
 }  // namespace lagrain::detail

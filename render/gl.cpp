@@ -65,8 +65,8 @@ GLuint program(const std::string& vertex, const std::string& fragment) {
   return id;
 }
 
-GLuint texture(GLint internal, int width, int height, GLenum format, GLenum type, const void* pixels,
-               GLint filter) {
+GLuint texture(GLint internal, int width, int height, GLenum format, GLenum type,
+               const void* pixels, GLint filter) {
   GLuint id = 0;
   GenTextures(1, &id);
   BindTexture(GL_TEXTURE_2D, id);

@@ -60,7 +60,8 @@ std::string encode_png(const Image& image, double dpi) {
                   "encode_png: an image of " + std::to_string(image.width) + " x " +
                       std::to_string(image.height) + " pixels holds " +
                       std::to_string(image.rgba.size()) + " bytes");
-  const auto pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  const auto pixels =
+      static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   bool opaque = true;
   for (std::size_t k = 0; k < pixels && opaque; ++k) opaque = image.rgba[4 * k + 3] == 255;
 

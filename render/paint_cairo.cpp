@@ -14,10 +14,12 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <numbers>
 #include <string>
+#include <string_view>
 
 namespace lagrain {
 namespace {
@@ -137,8 +139,8 @@ class Painter {
       cairo_set_font_size(cairo_, glyphs[first].size);
       const auto count = static_cast<int>(run.size());
       if (text_as_text_) {
-        cairo_show_text_glyphs(cairo_, text.data(), static_cast<int>(text.size()), run.data(), count,
-                               clusters.data(), static_cast<int>(clusters.size()),
+        cairo_show_text_glyphs(cairo_, text.data(), static_cast<int>(text.size()), run.data(),
+                               count, clusters.data(), static_cast<int>(clusters.size()),
                                static_cast<cairo_text_cluster_flags_t>(0));
       } else {  // pixels: Cairo 1.16 would round glyphs to whole pixels
         cairo_glyph_path(cairo_, run.data(), count);
@@ -168,7 +170,8 @@ class Painter {
         const std::uint8_t* p =
             image.rgba.data() + 4 * (y * static_cast<std::size_t>(image.width) + x);
         const auto times = [&](int k) { return (p[k] * p[3] + 127U) / 255U; };
-        const std::uint32_t word = std::uint32_t{p[3]} << 24 | times(0) << 16 | times(1) << 8 | times(2);
+        const std::uint32_t word =
+            std::uint32_t{p[3]} << 24 | times(0) << 16 | times(1) << 8 | times(2);
         std::memcpy(data + y * stride + 4 * x, &word, 4);
       }
     }
@@ -180,9 +183,9 @@ class Painter {
     cairo_set_source_surface(cairo_, surface.get(), 0, 0);
     double pixel_x = 1, pixel_y = 1;
     cairo_user_to_device_distance(cairo_, &pixel_x, &pixel_y);
-    cairo_pattern_set_filter(cairo_get_source(cairo_),
-                             text_as_text_ || std::abs(pixel_x) >= 1 ? CAIRO_FILTER_NEAREST
-                                                                     : CAIRO_FILTER_GOOD);
+    cairo_pattern_set_filter(cairo_get_source(cairo_), text_as_text_ || std::abs(pixel_x) >= 1
+                                                           ? CAIRO_FILTER_NEAREST
+                                                           : CAIRO_FILTER_GOOD);
     cairo_rectangle(cairo_, 0, 0, image.width, image.height);
     cairo_fill(cairo_);
     cairo_restore(cairo_);
@@ -233,6 +236,31 @@ cairo_status_t append(void* to, const unsigned char* bytes, unsigned count) {
   return CAIRO_STATUS_SUCCESS;
 }
 
+// Cairo numbers what it draws through the life of the process and writes the numbers into SVG as
+// names. Counting from one instead makes equal pictures equal files.
+std::string renumbered(const std::string& svg) {
+  std::map<std::string, std::string> names;
+  std::string out;
+  out.reserve(svg.size());
+  for (std::size_t at = 0; at < svg.size();) {
+    std::size_t end = at;
+    for (const std::string_view word : {"\"surface", "\"image", "\"#image"}) {
+      if (svg.compare(at, word.size(), word) == 0) end = at + word.size();
+    }
+    std::size_t digits = end;
+    while (digits < svg.size() && svg[digits] >= '0' && svg[digits] <= '9') ++digits;
+    if (end == at || digits == end) {
+      out += svg[at++];
+      continue;
+    }
+    const std::string number = svg.substr(end, digits - end);
+    const auto name = names.emplace(number, std::to_string(names.size() + 1)).first->second;
+    out.append(svg, at, end - at).append(name);
+    at = digits;
+  }
+  return out;
+}
+
 // Finishing writes the trailer; only then are the bytes complete.
 std::string finished(const Surface& surface, const std::string& bytes) {
   cairo_surface_finish(surface.get());
@@ -250,8 +278,9 @@ namespace detail {
 std::string encode_pdf(const DisplayList& list) {
   expect_page(list);
   std::string bytes;
-  const Surface surface(cairo_pdf_surface_create_for_stream(append, &bytes, list.width, list.height),
-                        cairo_surface_destroy);
+  const Surface surface(
+      cairo_pdf_surface_create_for_stream(append, &bytes, list.width, list.height),
+      cairo_surface_destroy);
   // A fixed date: the same list gives the same bytes.
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE,
                                  "2000-01-01T00:00:00Z");
@@ -301,10 +330,11 @@ void paint_pdf(const DisplayList& list, const std::filesystem::path& path) {
 void paint_svg(const DisplayList& list, const std::filesystem::path& path) {
   expect_page(list);
   std::string bytes;
-  const Surface surface(cairo_svg_surface_create_for_stream(append, &bytes, list.width, list.height),
-                        cairo_surface_destroy);
+  const Surface surface(
+      cairo_svg_surface_create_for_stream(append, &bytes, list.width, list.height),
+      cairo_surface_destroy);
   paint(surface.get(), list, 1, true);
-  detail::write_whole(path, finished(surface, bytes));
+  detail::write_whole(path, renumbered(finished(surface, bytes)));
 }
 
 }  // namespace lagrain

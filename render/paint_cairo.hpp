@@ -1,6 +1,7 @@
 #pragma once
 /// @file
-/// The same display list by Cairo as pixels: an independent witness for the tests. Private to render.
+/// The same display list by Cairo as pixels: an independent witness for the tests. Private to
+/// render.
 
 #include <lagrain/paint.hpp>
 

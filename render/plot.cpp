@@ -39,7 +39,11 @@ std::string plain(double value) {
 
 // "$<before>10^{exponent}$"
 std::string power_of_ten(int exponent, const std::string& before = {}) {
-  return std::string("$").append(before).append("10^{").append(std::to_string(exponent)).append("}$");
+  return std::string("$")
+      .append(before)
+      .append("10^{")
+      .append(std::to_string(exponent))
+      .append("}$");
 }
 
 bool shown(double value, const Axis& axis) {
@@ -48,12 +52,13 @@ bool shown(double value, const Axis& axis) {
 
 // From the axis' unit to the page, along one direction.
 struct Scale {
-  double low, high;    // range of values
-  double from, to;     // on the page [pt]
+  double low, high;  // range of values
+  double from, to;   // on the page [pt]
   bool log;
 
   double at(double value) const {
-    const double t = log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
+    const double t =
+        log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
     return from + t * (to - from);
   }
   bool holds(double value) const {
@@ -88,9 +93,9 @@ void range(const Axis& axis, const std::vector<Series>& all, std::vector<double>
   }
   if (axis.low) low = *axis.low;
   if (axis.high) high = *axis.high;
-  LAGRAIN_EXPECTS(low < high && (!axis.log || low > 0),
-                  "add_plot: range " + std::to_string(low) + " to " + std::to_string(high) +
-                      " of the axis \"" + axis.label + "\"");
+  LAGRAIN_EXPECTS(low < high && (!axis.log || low > 0), "add_plot: range " + std::to_string(low) +
+                                                            " to " + std::to_string(high) +
+                                                            " of the axis \"" + axis.label + "\"");
 }
 
 void add_marker(DisplayList& list, const Vec<2>& p, const Series& series) {
@@ -102,12 +107,23 @@ void add_marker(DisplayList& list, const Vec<2>& p, const Series& series) {
     list.add(out);
   };
   switch (series.marker) {
-    case Marker::none: break;
-    case Marker::disc: list.add(Disc{p, r, series.colour, {}}); break;
-    case Marker::ring: list.add(Disc{p, r, style::kPaper, line}); break;
-    case Marker::square: polygon({{-0.9, -0.9}, {0.9, -0.9}, {0.9, 0.9}, {-0.9, 0.9}}); break;
-    case Marker::triangle: polygon({{-1.1, -0.7}, {1.1, -0.7}, {0.0, 1.2}}); break;
-    case Marker::diamond: polygon({{-1.25, 0.0}, {0.0, -1.25}, {1.25, 0.0}, {0.0, 1.25}}); break;
+    case Marker::none:
+      break;
+    case Marker::disc:
+      list.add(Disc{p, r, series.colour, {}});
+      break;
+    case Marker::ring:
+      list.add(Disc{p, r, style::kPaper, line});
+      break;
+    case Marker::square:
+      polygon({{-0.9, -0.9}, {0.9, -0.9}, {0.9, 0.9}, {-0.9, 0.9}});
+      break;
+    case Marker::triangle:
+      polygon({{-1.1, -0.7}, {1.1, -0.7}, {0.0, 1.2}});
+      break;
+    case Marker::diamond:
+      polygon({{-1.25, 0.0}, {0.0, -1.25}, {1.25, 0.0}, {0.0, 1.25}});
+      break;
   }
 }
 
@@ -151,7 +167,8 @@ void add_legend(DisplayList& list, const Box& inside, const Plot& plot) {
   const Vec<2> low(left ? inside.low[0] + kMargin : inside.high[0] - kMargin - width,
                    top ? inside.high[1] - kMargin - height : inside.low[1] + kMargin);
   // A translucent ground keeps the legend readable where a curve passes beneath.
-  list.add(Polygon{corners({low, low + Vec<2>(width, height)}), with_alpha(style::kPaper, 0.85), {}});
+  list.add(
+      Polygon{corners({low, low + Vec<2>(width, height)}), with_alpha(style::kPaper, 0.85), {}});
   double y = low[1] + height - 0.5 * kMargin - 0.5 * kRow;
   for (const Series& series : plot.series) {
     if (series.name.empty()) continue;
@@ -160,7 +177,11 @@ void add_legend(DisplayList& list, const Box& inside, const Plot& plot) {
       list.add(Polyline{{{x0, y}, {x1, y}}, {series.colour, series.width}, series.dashes});
     }
     add_marker(list, {0.5 * (x0 + x1), y}, series);
-    list.add(Label{series.name, {x1 + kMargin, y}, style::kSmallText, style::kInk, Across::left,
+    list.add(Label{series.name,
+                   {x1 + kMargin, y},
+                   style::kSmallText,
+                   style::kInk,
+                   Across::left,
                    Along::middle});
     y -= kRow;
   }
@@ -171,12 +192,19 @@ void add_legend(DisplayList& list, const Box& inside, const Plot& plot) {
 Ticks nice_ticks(double low, double high, int count) {
   LAGRAIN_EXPECTS(std::isfinite(low) && std::isfinite(high) && low < high && count >= 2,
                   "nice_ticks: from " + std::to_string(low) + " to " + std::to_string(high));
+  // The smallest step of 1, 2 or 5 times a power of ten that gives no more than `count` intervals;
+  // a smaller one if the range happens to lie between two of its ticks.
   const double rough = (high - low) / count;
   int decade = static_cast<int>(std::floor(std::log10(rough)));
-  double digit = rough / std::pow(10, decade);
-  digit = digit <= 1.0000001 ? 1 : digit <= 2.0000001 ? 2 : digit <= 5.0000001 ? 5 : 10;
-  if (digit == 10) digit = 1, ++decade;
-  const double step = digit * std::pow(10, decade);
+  const double lead = rough / std::pow(10, decade);
+  double digit = lead <= 1.0000001 ? 1 : lead <= 2.0000001 ? 2 : 5;
+  if (lead > 5.0000001) digit = 1, ++decade;
+  double step = digit * std::pow(10, decade);
+  while (std::floor(high / step + 1e-9) - std::ceil(low / step - 1e-9) < 1) {
+    if (digit == 1) --decade;
+    digit = digit == 1 ? 5 : digit == 2 ? 1 : 2;
+    step = digit * std::pow(10, decade);
+  }
 
   Ticks out;
   const double largest = std::max(std::abs(low), std::abs(high));
@@ -202,15 +230,14 @@ Ticks log_ticks(double low, double high, int count) {
   Ticks out;
   for (int e = first; e <= last; ++e) {
     for (int m = 1; m <= 9; ++m) {
-      if (m > 1 && powers > 2 * count) break;
+      if (m > 1 && 10 * powers > 7 * count) break;
       const double value = e < 0 ? m / std::pow(10, -e) : m * std::pow(10, e);
       if (value < low * (1 - 1e-9) || value > high * (1 + 1e-9)) continue;
       std::string label;
       if (m == 1 && (e - lowest_power) % stride == 0) {
         label = e == 0 ? "1" : e == 1 ? "10" : power_of_ten(e);
       } else if (powers < 2 && (m == 2 || m == 5)) {
-        label = e >= -2 && e <= 3 ? plain(value)
-                                  : power_of_ten(e, std::to_string(m) + "\\times");
+        label = e >= -2 && e <= 3 ? plain(value) : power_of_ten(e, std::to_string(m) + "\\times");
       }
       out.ticks.push_back({value, label});
     }
@@ -255,10 +282,12 @@ Box add_plot(DisplayList& list, const Box& area, const Plot& plot) {
   for (const Tick& tick : xt.ticks) {
     last_x = std::max(last_x, 0.5 * text_extents(tick.label, style::kSmallText).advance);
   }
-  const double name = 1.45 * style::kText;
-  const double left = kTickLength + 2 * kGap + y_labels + (plot.y.label.empty() ? 0 : name);
+  const double name = 1.25 * style::kText;          // a line
+  const double x_name = name + 0.3 * style::kText;  // a line and its descenders
+  const double left =
+      kTickLength + 2 * kGap + y_labels + (plot.y.label.empty() ? 0 : 1.35 * style::kText);
   const double bottom =
-      kTickLength + 2 * kGap + style::kSmallText + (plot.x.label.empty() ? 0 : name);
+      kTickLength + kGap + kCapHeight * style::kSmallText + (plot.x.label.empty() ? 1 : x_name);
   const double top = yt.exponent != 0 ? 1.6 * style::kSmallText : 0.5 * style::kSmallText;
   const Box inside{area.low + Vec<2>(left, bottom), area.high - Vec<2>(std::max(last_x, 3.0), top)};
   LAGRAIN_EXPECTS(inside.size().minCoeff() > 0, "add_plot: the area is too small for its labels");
@@ -291,20 +320,32 @@ Box add_plot(DisplayList& list, const Box& area, const Plot& plot) {
   }
   if (xt.exponent != 0) {
     list.add(Label{power_of_ten(xt.exponent, "\\times"),
-                   {inside.high[0], area.low[1] + 0.35 * style::kText}, style::kSmallText,
-                   style::kInk, Across::right});
+                   {inside.high[0], area.low[1] + 0.3 * style::kText},
+                   style::kSmallText,
+                   style::kInk,
+                   Across::right});
   }
   if (yt.exponent != 0) {
     list.add(Label{power_of_ten(yt.exponent, "\\times"),
-                   {inside.low[0], inside.high[1] + kGap}, style::kSmallText, style::kInk});
+                   {inside.low[0], inside.high[1] + kGap},
+                   style::kSmallText,
+                   style::kInk});
   }
   if (!plot.x.label.empty()) {
-    list.add(Label{plot.x.label, {inside.centre()[0], area.low[1] + 0.35 * style::kText},
-                   style::kText, style::kInk, Across::centre});
+    list.add(Label{plot.x.label,
+                   {inside.centre()[0], area.low[1] + 0.3 * style::kText},
+                   style::kText,
+                   style::kInk,
+                   Across::centre});
   }
   if (!plot.y.label.empty()) {
-    list.add(Label{plot.y.label, {area.low[0] + style::kText, inside.centre()[1]}, style::kText,
-                   style::kInk, Across::centre, Along::baseline, std::numbers::pi / 2});
+    list.add(Label{plot.y.label,
+                   {area.low[0] + style::kText, inside.centre()[1]},
+                   style::kText,
+                   style::kInk,
+                   Across::centre,
+                   Along::baseline,
+                   std::numbers::pi / 2});
   }
   add_legend(list, inside, plot);
   return inside;
@@ -319,13 +360,16 @@ void add_colour_bar(DisplayList& list, const Box& bar, ColourMap map, double low
   }
   list.add(Picture{image, bar});
   add_frame(list, bar);
-  const Ticks ticks =
-      nice_ticks(low, high, std::clamp(static_cast<int>(bar.size()[1] / 22), 2, 8));
+  const Ticks ticks = nice_ticks(low, high, std::clamp(static_cast<int>(bar.size()[1] / 22), 2, 8));
   for (const Tick& tick : ticks.ticks) {
     const double y = bar.low[1] + (tick.value - low) / (high - low) * bar.size()[1];
     list.add(Segment{{bar.high[0], y}, {bar.high[0] + kTickLength, y}, style::kAxisLine});
-    list.add(Label{tick.label, {bar.high[0] + kTickLength + kGap, y}, style::kSmallText, style::kInk,
-                   Across::left, Along::middle});
+    list.add(Label{tick.label,
+                   {bar.high[0] + kTickLength + kGap, y},
+                   style::kSmallText,
+                   style::kInk,
+                   Across::left,
+                   Along::middle});
   }
   std::string name = label;
   if (ticks.exponent != 0) name.append(" ").append(power_of_ten(ticks.exponent, "\\times"));
@@ -342,15 +386,21 @@ Box add_width_legend(DisplayList& list, const Vec<2>& at, std::span<const double
     thickest = std::max(thickest, width * values[k]);
     const double advance = text_extents(text, style::kSmallText).advance;
     const double half = 0.5 * std::max(kSample + width * values[k], advance);
-    list.add(Segment{{x + half - 0.5 * kSample, at[1]}, {x + half + 0.5 * kSample, at[1]},
+    list.add(Segment{{x + half - 0.5 * kSample, at[1]},
+                     {x + half + 0.5 * kSample, at[1]},
                      {colour, width * values[k]}});
-    list.add(Label{text, {x + half, at[1] - 0.5 * width * values[k] - kGap}, style::kSmallText,
-                   style::kInk, Across::centre, Along::top});
+    list.add(Label{text,
+                   {x + half, at[1] - 0.5 * width * values[k] - kGap},
+                   style::kSmallText,
+                   style::kInk,
+                   Across::centre,
+                   Along::top});
     x += 2 * half + kSpace;
   }
   // The numbers stand on one line, below the thickest sample.
   for (std::size_t k = list.items.size() - 2 * values.size(); k < list.items.size(); ++k) {
-    if (auto* text = std::get_if<Label>(&list.items[k])) text->at[1] = at[1] - 0.5 * thickest - kGap;
+    if (auto* text = std::get_if<Label>(&list.items[k]))
+      text->at[1] = at[1] - 0.5 * thickest - kGap;
   }
   return {{at[0], at[1] - 0.5 * thickest - kGap - style::kSmallText},
           {x - kSpace, at[1] + 0.5 * thickest}};

@@ -70,21 +70,62 @@ std::string utf8(char32_t c) {
 
 // Signs by their TeX names. Greek small letters are slanted, capitals upright, as in TeX.
 const std::map<std::string, char32_t>& commands() {
-  static const std::map<std::string, char32_t> table{
-      {"alpha", 0x1D6FC},   {"beta", 0x1D6FD},  {"gamma", 0x1D6FE},   {"delta", 0x1D6FF},
-      {"varepsilon", 0x1D700}, {"zeta", 0x1D701}, {"eta", 0x1D702},   {"theta", 0x1D703},
-      {"iota", 0x1D704},    {"kappa", 0x1D705}, {"lambda", 0x1D706},  {"mu", 0x1D707},
-      {"nu", 0x1D708},      {"xi", 0x1D709},    {"pi", 0x1D70B},      {"rho", 0x1D70C},
-      {"sigma", 0x1D70E},   {"tau", 0x1D70F},   {"varphi", 0x1D711},  {"chi", 0x1D712},
-      {"psi", 0x1D713},     {"omega", 0x1D714}, {"partial", 0x1D715}, {"epsilon", 0x1D716},
-      {"phi", 0x1D719},     {"Gamma", 0x393},   {"Delta", 0x394},     {"Theta", 0x398},
-      {"Lambda", 0x39B},    {"Xi", 0x39E},      {"Pi", 0x3A0},        {"Sigma", 0x3A3},
-      {"Phi", 0x3A6},       {"Psi", 0x3A8},     {"Omega", 0x3A9},     {"times", 0xD7},
-      {"cdot", 0x22C5},     {"pm", 0xB1},       {"le", 0x2264},       {"ge", 0x2265},
-      {"approx", 0x2248},   {"sim", 0x223C},    {"to", 0x2192},       {"infty", 0x221E},
-      {"propto", 0x221D},   {"ne", 0x2260},     {"in", 0x2208},       {"circ", 0x2218},
-      {"prime", 0x2032},    {"ldots", 0x2026},  {"{", '{'},           {"}", '}'},
-      {"$", '$'},           {"%", '%'},         {"_", '_'},           {"\\", '\\'}};
+  static const std::map<std::string, char32_t> table{{"alpha", 0x1D6FC},
+                                                     {"beta", 0x1D6FD},
+                                                     {"gamma", 0x1D6FE},
+                                                     {"delta", 0x1D6FF},
+                                                     {"varepsilon", 0x1D700},
+                                                     {"zeta", 0x1D701},
+                                                     {"eta", 0x1D702},
+                                                     {"theta", 0x1D703},
+                                                     {"iota", 0x1D704},
+                                                     {"kappa", 0x1D705},
+                                                     {"lambda", 0x1D706},
+                                                     {"mu", 0x1D707},
+                                                     {"nu", 0x1D708},
+                                                     {"xi", 0x1D709},
+                                                     {"pi", 0x1D70B},
+                                                     {"rho", 0x1D70C},
+                                                     {"sigma", 0x1D70E},
+                                                     {"tau", 0x1D70F},
+                                                     {"varphi", 0x1D711},
+                                                     {"chi", 0x1D712},
+                                                     {"psi", 0x1D713},
+                                                     {"omega", 0x1D714},
+                                                     {"partial", 0x1D715},
+                                                     {"epsilon", 0x1D716},
+                                                     {"phi", 0x1D719},
+                                                     {"Gamma", 0x393},
+                                                     {"Delta", 0x394},
+                                                     {"Theta", 0x398},
+                                                     {"Lambda", 0x39B},
+                                                     {"Xi", 0x39E},
+                                                     {"Pi", 0x3A0},
+                                                     {"Sigma", 0x3A3},
+                                                     {"Phi", 0x3A6},
+                                                     {"Psi", 0x3A8},
+                                                     {"Omega", 0x3A9},
+                                                     {"times", 0xD7},
+                                                     {"cdot", 0x22C5},
+                                                     {"pm", 0xB1},
+                                                     {"le", 0x2264},
+                                                     {"ge", 0x2265},
+                                                     {"approx", 0x2248},
+                                                     {"sim", 0x223C},
+                                                     {"to", 0x2192},
+                                                     {"infty", 0x221E},
+                                                     {"propto", 0x221D},
+                                                     {"ne", 0x2260},
+                                                     {"in", 0x2208},
+                                                     {"circ", 0x2218},
+                                                     {"prime", 0x2032},
+                                                     {"ldots", 0x2026},
+                                                     {"{", '{'},
+                                                     {"}", '}'},
+                                                     {"$", '$'},
+                                                     {"%", '%'},
+                                                     {"_", '_'},
+                                                     {"\\", '\\'}};
   return table;
 }
 
@@ -100,12 +141,32 @@ char32_t italic(char32_t c) {
 enum class Role { ordinary, relation, binary, opening, comma };
 Role role(char32_t c) {
   switch (c) {
-    case '=': case '<': case '>': case 0x2264: case 0x2265: case 0x2248: case 0x223C:
-    case 0x2192: case 0x221D: case 0x2260: case 0x2208: return Role::relation;
-    case '+': case 0x2212: case 0xD7: case 0x22C5: case 0xB1: return Role::binary;
-    case '(': case '[': case '{': return Role::opening;
-    case ',': return Role::comma;
-    default: return Role::ordinary;
+    case '=':
+    case '<':
+    case '>':
+    case 0x2264:
+    case 0x2265:
+    case 0x2248:
+    case 0x223C:
+    case 0x2192:
+    case 0x221D:
+    case 0x2260:
+    case 0x2208:
+      return Role::relation;
+    case '+':
+    case 0x2212:
+    case 0xD7:
+    case 0x22C5:
+    case 0xB1:
+      return Role::binary;
+    case '(':
+    case '[':
+    case '{':
+      return Role::opening;
+    case ',':
+      return Role::comma;
+    default:
+      return Role::ordinary;
   }
 }
 
@@ -143,9 +204,9 @@ class Typesetter {
 
  private:
   struct Style {
-    double size;   // [pt]
-    double rise;   // of the baseline [pt]
-    int depth;     // of scripts
+    double size;  // [pt]
+    double rise;  // of the baseline [pt]
+    int depth;    // of scripts
   };
 
   [[noreturn]] void fail(const std::string& why) const {
@@ -303,7 +364,8 @@ class Typesetter {
         if (open == 0) break;
       }
     } else if (k < text_.size() && text_[k] == '\\') {
-      while (k + 1 < text_.size() && std::isalpha(static_cast<unsigned char>(text_[k + 1])) != 0) ++k;
+      while (k + 1 < text_.size() && std::isalpha(static_cast<unsigned char>(text_[k + 1])) != 0)
+        ++k;
     }
     return k + 1 < text_.size() && (text_[k + 1] == '_' || text_[k + 1] == '^');
   }

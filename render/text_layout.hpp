@@ -18,10 +18,10 @@ enum class Font { text, math };
 /// A glyph with its origin relative to the start of the line, before the label's rotation.
 struct PlacedGlyph {
   Font font;
-  std::uint32_t index;   ///< in the font file
-  Vec<2> at;             ///< [pt]
-  double size;           ///< [pt]
-  std::string text;      ///< what the glyph says, UTF-8; for text search in a PDF
+  std::uint32_t index;  ///< in the font file
+  Vec<2> at;            ///< [pt]
+  double size;          ///< [pt]
+  std::string text;     ///< what the glyph says, UTF-8; for text search in a PDF
 };
 
 struct TextLayout {

@@ -157,6 +157,10 @@ class Triangulation<2> {
     const auto v = topology_.vertices(triangle);
     return {v[0], v[1], v[2]};
   }
+  bool moved_place(int id) const {
+    return id >= 0 && (sites_[index(id)].x != before_[index(id)].x ||
+                       sites_[index(id)].y != before_[index(id)].y);
+  }
   bool positive(const Site2* places, int a, int b, int c) const;
   bool conflict(int triangle, int site) const;
   bool locally_regular(int corner) const;
@@ -182,6 +186,7 @@ class Triangulation<2> {
   void close_hull(std::size_t first, const Site2* places);
   bool extract_inverted(std::span<const int> moved, bool sweep);
   void choose_cover(std::span<const int> triangles);
+  void choose_folded();
   bool insert_visible(int site);
   void try_hidden();
   UpdateReport finish();

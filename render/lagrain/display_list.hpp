@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -35,7 +36,8 @@ struct Box {
 /// Colour of an area that is not filled.
 inline constexpr Colour kNoFill{0, 0, 0, 0};
 
-/// How a line is drawn. A width of 0 draws nothing; widths below a pixel become fainter, not thinner.
+/// How a line is drawn. A width of 0 draws nothing; widths below a pixel become fainter, not
+/// thinner.
 struct Stroke {
   Colour colour = {};
   double width = 0;  ///< [pt]
@@ -70,7 +72,8 @@ struct Polygon {
 struct Polyline {
   std::vector<Vec<2>> points;  ///< [pt]
   Stroke stroke = {};
-  /// Lengths of dash, gap, dash, gap, ... [pt]; empty is solid. Round caps lengthen a dash by the width.
+  /// Lengths of dash, gap, dash, gap, ... [pt]; empty is solid. Round caps lengthen a dash by the
+  /// width.
   std::vector<double> dashes = {};
 };
 
@@ -112,23 +115,26 @@ struct PushClip {
 /// Ends the latest clip.
 struct PopClip {};
 
-using Item =
-    std::variant<Disc, Segment, Polygon, Polyline, Label, Picture, PushClip, PopClip>;
+using Item = std::variant<Disc, Segment, Polygon, Polyline, Label, Picture, PushClip, PopClip>;
 
 /// A page and what is on it, in painter's order.
 struct DisplayList {
-  double width = 0;                         ///< of the page [pt]
-  double height = 0;                        ///< of the page [pt]
+  double width = 0;                          ///< of the page [pt]
+  double height = 0;                         ///< of the page [pt]
   Colour background = {255, 255, 255, 255};  ///< alpha 0 gives a transparent page
-  std::string title = {};                   ///< kept in the PDF's metadata
+  std::string title = {};                    ///< kept in the PDF's metadata
   std::vector<Item> items = {};
 
-  void add(Item item) { items.push_back(std::move(item)); }
+  /// Puts a Disc, Segment, Polygon, ... on top of what is there.
+  template <class T>
+  void add(T&& item) {
+    items.emplace_back(std::forward<T>(item));
+  }
   Box page() const { return {Vec<2>::Zero(), Vec<2>(width, height)}; }
 };
 
-/// Maps a rectangle of the world [m] to a rectangle of the page [pt] with equal scales on both axes;
-/// what is left over in one direction is shared between the two sides.
+/// Maps a rectangle of the world [m] to a rectangle of the page [pt] with equal scales on both
+/// axes; what is left over in one direction is shared between the two sides.
 class Panel {
  public:
   /// @pre both boxes have positive width and height
@@ -137,7 +143,9 @@ class Panel {
   Vec<2> point(const Vec<2>& world) const { return origin_ + scale_ * world; }  ///< [m] -> [pt]
   double length(double metres) const { return scale_ * metres; }                ///< [m] -> [pt]
   double scale() const { return scale_; }                                       ///< [pt/m]
-  const Box& box() const { return box_; }  ///< image of the world rectangle [pt], for clips and frames
+  const Box& box() const {
+    return box_;
+  }  ///< image of the world rectangle [pt], for clips and frames
 
  private:
   double scale_;

@@ -24,12 +24,14 @@ struct Ticks {
   int exponent = 0;  ///< a label times 10^exponent is the value
 };
 
-/// Multiples of 1, 2 or 5 times a power of ten inside [low, high], at most about `count` of them.
+/// Multiples of 1, 2 or 5 times a power of ten inside [low, high]: at least two, at most about
+/// `count`.
 /// @pre low < high, both finite; count >= 2
 Ticks nice_ticks(double low, double high, int count = 6);
 
 /// Powers of ten inside [low, high], labelled as such, thinned when there are many; minor ticks at
-/// 2, 3, ... 9 when the range is short. A range without two powers of ten gets labels at 1, 2 and 5.
+/// 2, 3, ... 9 when the range is short. A range without two powers of ten gets labels at 1, 2
+/// and 5.
 /// @pre 0 < low < high
 Ticks log_ticks(double low, double high, int count = 6);
 
@@ -41,8 +43,8 @@ struct Series {
   std::vector<double> x;  ///< in the axis' unit, shape N
   std::vector<double> y;  ///< N; a NaN, or a value <= 0 on a logarithmic axis, interrupts the line
   Colour colour = style::kInk;
-  double width = 1.0;                ///< [pt]; 0: markers only
-  std::vector<double> dashes = {};   ///< [pt], as in Polyline
+  double width = 1.0;               ///< [pt]; 0: markers only
+  std::vector<double> dashes = {};  ///< [pt], as in Polyline
   Marker marker = Marker::none;
 };
 
