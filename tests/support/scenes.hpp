@@ -249,4 +249,74 @@ Impact head_on(const Law& law, const Strike& strike) {
   return impact;
 }
 
+/// The overlap at which the contact's elastic force carries a load [N], by bisection.
+template <int Dim, class Normal>
+double static_overlap(const Normal& normal, double effective_radius, double load) {
+  Touch<Dim> touch;
+  touch.effective_radius = effective_radius;
+  double low = 0;
+  double high = effective_radius;
+  for (int k = 0; k < 200; ++k) {
+    touch.overlap = 0.5 * (low + high);
+    (normal.elastic_force(touch) < load ? low : high) = touch.overlap;
+  }
+  return touch.overlap;
+}
+
+/// How a grain hits its like, or a wall, at an angle.
+struct Glance {
+  bool wall = true;
+  double tangent = 4;  ///< tangential over normal speed before; the normal speed is 1 m/s
+  double refinement = 10;
+};
+
+/// Relative velocities of the centres and the slip of the surfaces, along the normal and along the
+/// first tangential motion [m/s].
+struct Rebound {
+  double normal = 0;
+  double tangential = 0;
+  double slip = 0;
+};
+
+/// Shoots a grain of radius and mass 1, without spin.
+template <int Dim, class Law>
+Rebound glance(const Law& law, const Glance& shot) {
+  const Vec<Dim> n = up<Dim>();
+  Vec<Dim> t = along<Dim>();
+  if constexpr (Dim == 3) t = Vec<3>(0.6, 0.8, 0);
+  Grain<Dim> a;
+  a.radius = 1;
+  a.mass = 1;
+  std::vector<Grain<Dim>> list{a};
+  std::vector<Wall<Dim>> walls;
+  const Vec<Dim> velocity = shot.tangent * t - n;
+  if (shot.wall) {
+    walls.push_back(Wall<Dim>::half_space("wall", -(1 + 1e-9) * n, n));
+    list[0].velocity = velocity;
+  } else {
+    list.push_back(a);
+    list[1].position = -(2 + 1e-9) * n;
+    list[0].velocity = 0.5 * velocity;
+    list[1].velocity = -0.5 * velocity;
+  }
+  auto sim = make_sim<Dim>(list, law, walls, shot.refinement);
+  bool touched = false;
+  for (int k = 0; k < 1000000; ++k) {
+    sim.step();
+    bool touching = false;
+    const auto note = [&](auto...) { touching = touched = true; };
+    sim.for_each_contact([&](auto&&...) { note(); });
+    sim.for_each_wall_contact([&](auto&&...) { note(); });
+    if (touched && !touching) break;
+  }
+  const auto& g = sim.grains();
+  Vec<Dim> v = g.velocity.col(0);
+  SpinVec<Dim> spin = g.omega.col(0);
+  if (!shot.wall) {
+    v -= g.velocity.col(1);
+    spin += g.omega.col(1);
+  }
+  return {v.dot(n), v.dot(t), (v - cross(spin, n)).dot(t)};
+}
+
 }  // namespace lagrain::test
