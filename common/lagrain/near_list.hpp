@@ -101,11 +101,9 @@ class NearList {
       const Wall<Dim>& wall = all_walls[w];
       wall_centre_[w] = wall.point;
       wall_margin_[w] = wall.moves() ? std::max(slack, kHorizon * dt * wall.velocity.norm()) : 0;
-      for (int i = 0; i < n; ++i) {
-        if (wall.foot(g.position.col(i)).distance <= g.radius[i] + margin_[i] + wall_margin_[w]) {
-          fresh_walls_.push_back({static_cast<int>(w), i});
-        }
-      }
+      const double reach = wall_margin_[w];
+      wall.for_each_within(g.position, [&](int i) { return g.radius[i] + margin_[i] + reach; },
+                           [&](int i) { fresh_walls_.push_back({static_cast<int>(w), i}); });
     }
     walls.replace(fresh_walls_);
 

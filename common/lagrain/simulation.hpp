@@ -12,6 +12,7 @@
 #include <lagrain/walls.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <sstream>
@@ -96,6 +97,12 @@ class Simulation {
   const N& neighbourhood() const { return neighbourhood_; }
   const EnergyFlow& flow() const { return flow_; }
 
+  /// Wall-clock time spent so far on knowing the near pairs: tests whether the list has expired,
+  /// and refreshes [s].
+  double neighbourhood_seconds() const {
+    return std::chrono::duration<double>(neighbourhood_time_).count();
+  }
+
   /// Visits every grain-grain contact: f(pair, touch, response, memory).
   template <class F>
   void for_each_contact(F&& f) const {
@@ -123,11 +130,15 @@ class Simulation {
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   void evaluate_forces() {
+    const auto start = Clock::now();
     if (near_.expired(grains_.position, walls_)) {
       check_finite();
       near_.refresh(grains_, walls_, neighbourhood_, setting_.time_step, steps_);
     }
+    neighbourhood_time_ += Clock::now() - start;
     for (Eigen::Index i = 0; i < grains_.force.cols(); ++i) {
       grains_.force.col(i) = grains_.mass[i] * setting_.gravity;
     }
@@ -312,8 +323,9 @@ class Simulation {
   NearList<Dim, Memory> near_;
   EnergyFlow flow_;
   Deepest deepest_;
-  double force_step_ = 0;
+  double force_step_ = 0;  ///< what memories and losses advance by in an evaluation [s]
   std::int64_t steps_ = 0;
+  Clock::duration neighbourhood_time_{0};
 };
 
 }  // namespace lagrain

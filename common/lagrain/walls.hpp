@@ -90,6 +90,22 @@ struct Wall {
     return {distance, away / distance};
   }
 
+  /// Visits, in increasing order, every grain i whose centre x.col(i) is no further than reach(i) [m]
+  /// from the wall's surface.
+  template <class Reach, class F>
+  void for_each_within(const Columns<Dim>& x, Reach&& reach, F&& visit) const {
+    const int n = static_cast<int>(x.cols());
+    if (const auto* plane = std::get_if<HalfSpace<Dim>>(&shape)) {
+      for (int i = 0; i < n; ++i) {
+        if ((x.col(i) - point).dot(plane->normal) <= reach(i)) visit(i);
+      }
+    } else {
+      for (int i = 0; i < n; ++i) {
+        if (foot(x.col(i)).distance <= reach(i)) visit(i);
+      }
+    }
+  }
+
   /// Brings the wall to time t [s], a step dt [s] after the last call.
   void advance(double t, double dt) {
     std::visit([&](const auto& m) { follow(m, t, dt); }, motion);

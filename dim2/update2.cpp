@@ -1,0 +1,534 @@
+#include <lagrain/triangulation2.hpp>
+
+#include <algorithm>
+#include <limits>
+
+namespace lagrain {
+
+// ---- Decisions ---------------------------------------------------------------------------------
+
+/// True for infinite triangles and for strictly counter-clockwise ones.
+bool Triangulation<2>::positive(const Site2* places, int a, int b, int c) const {
+  return (a | b | c) < 0 || orientation(places[a], places[b], places[c]) > 0;
+}
+
+bool Triangulation<2>::conflict(int triangle, int site) const {
+  const auto [a, b, c] = corners_of(triangle);
+  if ((a | b | c) >= 0) return in_conflict(sites_.data(), a, b, c, site);
+  if (a < 0) return in_conflict_beyond(sites_.data(), b, c, site);
+  if (b < 0) return in_conflict_beyond(sites_.data(), c, a, site);
+  return in_conflict_beyond(sites_.data(), a, b, site);
+}
+
+/// A hull edge always is: no finite site beyond it belongs to its two triangles.
+bool Triangulation<2>::locally_regular(int corner) const {
+  const int apex = topology_.vertex(corner), opposite = topology_.vertex(topology_.twin(corner));
+  return (apex | opposite) < 0 || !conflict(corner >> 2, opposite);
+}
+
+/// A closed chain that never turns right and has one lexicographic minimum is a convex polygon.
+bool Triangulation<2>::hull_goes_round_once() const {
+  const auto before = [&](int i, int j) {
+    const Site2 &a = sites_[index(i)], &b = sites_[index(j)];
+    return a.x != b.x ? a.x < b.x : a.y < b.y;
+  };
+  int minima = 0;
+  topology_.for_each_corner(Topology2::kInfinite, [&](int corner) {
+    const int last = topology_.source(corner), here = topology_.target(corner);
+    const int next = topology_.target(topology_.turn(corner));
+    minima += before(here, last) && before(here, next);
+  });
+  return minima == 1;
+}
+
+bool Triangulation<2>::tiny() const {
+  return dimension_ < 2 || present_ - static_cast<int>(hidden_.size()) < kTiny;
+}
+
+int Triangulation<2>::next_epoch() {
+  if (epoch_ == std::numeric_limits<int>::max()) {
+    std::fill(site_epoch_.begin(), site_epoch_.end(), 0);
+    for (int t = 0; t < topology_.slots(); ++t) topology_.set_mark(t, 0);
+    epoch_ = 0;
+  }
+  return ++epoch_;
+}
+
+/// Notes that a present site has no triangle; `hint` is a visible site near it. A hint that is
+/// hidden later leads on to its own hint, and so on without a cycle.
+void Triangulation<2>::hide(int site, int hint) {
+  topology_.set_corner_of(site, -2 - hint);
+  hidden_.push_back(site);
+}
+
+// ---- Flips -------------------------------------------------------------------------------------
+
+void Triangulation<2>::push(int corner) {
+  corner = std::min(corner, topology_.twin(corner));
+  if (!topology_.exchange_flag(corner, true)) queue_.push_back(corner);
+}
+
+void Triangulation<2>::push_triangle(int triangle) {
+  for (int i = 0; i < 3; ++i) push(4 * triangle + i);
+}
+
+void Triangulation<2>::flip(int corner) {
+  const int other = topology_.flip(corner);
+  ++report_.flips;
+  if (topology_.infinite(corner >> 2) || topology_.infinite(other >> 2)) hull_touched_ = true;
+}
+
+/// Flips until the queue is empty; edges that cannot be flipped end in stuck_.
+/// @return false if the budget is spent, which means that T was no triangulation
+bool Triangulation<2>::drain() {
+  while (!queue_.empty()) {
+    const int corner = queue_.back();
+    queue_.pop_back();
+    topology_.exchange_flag(corner, false);
+    if (!topology_.alive(corner >> 2) || locally_regular(corner)) continue;
+    if (!resolve(corner)) stuck_.push_back(corner);
+    if (--budget_ < 0) return false;
+  }
+  return true;
+}
+
+/// Drains the queue and takes out the reflex ends of stuck edges until T is locally regular.
+///
+/// Why that is right: edge (a, b) has the apices c and d, and a is reflex, so a lies in the
+/// triangle b, c, d; the edge is not regular, so a lies above the plane of b, c, d: it is hidden
+/// for good.
+bool Triangulation<2>::settle() {
+  for (;;) {
+    if (!drain()) return false;
+    if (stuck_.empty()) return true;
+    const int corner = stuck_.back();
+    stuck_.pop_back();
+    if (!topology_.alive(corner >> 2) || locally_regular(corner) || resolve(corner)) continue;
+    const int site = reflex_end(corner);
+    const int hint = finite_neighbour(site);
+    touched_.clear();
+    if (!remove_by_flips(site, sites_.data())) return false;
+    hide(site, hint);
+    ++report_.unstuck;
+    for (const int triangle : touched_) {
+      if (topology_.alive(triangle)) push_triangle(triangle);
+    }
+  }
+}
+
+/// The finite end of an edge at which its two triangles together turn by 180 degrees or more, or
+/// -1.
+int Triangulation<2>::reflex_end(int corner) const {
+  const int c = topology_.vertex(corner), d = topology_.vertex(topology_.twin(corner));
+  const int a = topology_.source(corner), b = topology_.target(corner);
+  if (!positive(sites_.data(), c, a, d)) return a;
+  if (!positive(sites_.data(), d, b, c)) return b;
+  return -1;
+}
+
+/// Makes an edge that is not locally regular go away: 2-2, 3-1, or flat 4-2. Only finite triangles
+/// have to come out positive, infinite ones may always be made.
+bool Triangulation<2>::resolve(int corner) {
+  const int site = reflex_end(corner);
+  if (site < 0) {
+    flip(corner);
+    const int other = topology_.twin(topology_.next(corner));
+    push(corner);
+    push(topology_.prev(corner));
+    push(topology_.next(other));  // the apex stayed at prev(other)
+    push(topology_.prev(other));
+    return true;
+  }
+  const int degree = topology_.degree(site, 5);
+  if (degree > 4) return false;
+  if (degree == 4) {
+    const int c = topology_.vertex(corner), d = topology_.vertex(topology_.twin(corner));
+    const auto at = [&](int id) { return sites_[index(id)]; };
+    if (orientation(at(c), at(site), at(d)) != 0) return false;
+    flip(corner);  // leaves a flat triangle for the time of one statement
+  }
+  const int hint = finite_neighbour(site);
+  const int left = topology_.remove_degree3(site);
+  ++report_.flips;
+  if (topology_.infinite(left)) hull_touched_ = true;
+  hide(site, hint);
+  push_triangle(left);
+  if (degree == 4) {
+    for (int i = 0; i < 3; ++i) push_triangle(topology_.twin(4 * left + i) >> 2);
+  }
+  return true;
+}
+
+int Triangulation<2>::finite_neighbour(int site) const {
+  const int corner = topology_.corner_of(site);
+  return topology_.source(corner) >= 0 ? topology_.source(corner) : topology_.target(corner);
+}
+
+bool Triangulation<2>::flip_to_regular(std::span<const int> moved, bool sweep) {
+  queue_.clear();
+  stuck_.clear();
+  budget_ = 64 * static_cast<std::int64_t>(topology_.slots()) + 10000;
+  if (sweep) {
+    for (int t = 0; t < topology_.slots(); ++t) {
+      if (!topology_.alive(t)) continue;
+      for (int corner = 4 * t; corner < 4 * t + 3; ++corner) {
+        if (topology_.twin(corner) < corner || locally_regular(corner)) continue;
+        push(corner);
+        if (!drain()) return false;
+        if (!topology_.alive(t)) break;
+      }
+    }
+  } else {
+    for (const int triangle : touched_) {
+      if (topology_.alive(triangle)) push_triangle(triangle);
+    }
+    for (const int site : moved) {
+      if (topology_.corner_of(site) < 0) continue;
+      topology_.for_each_corner(site, [&](int corner) {
+        push(corner);
+        push(topology_.prev(corner));
+      });
+      if (!drain()) return false;
+    }
+  }
+  return settle() && (!hull_touched_ || hull_goes_round_once());
+}
+
+// ---- Taking out --------------------------------------------------------------------------------
+
+/// Takes a site out by flips of its own edges. In any triangulation with a convex hull this
+/// succeeds: an edge of a site inside can be flipped until three are left (of the ears of its link
+/// at least two do not hold it; four with the site on a diagonal are the flat case), and a site on
+/// the hull loses the ears of its fan and then the fan itself. Adds the triangles it made to
+/// touched_.
+/// @return false if the rest would be flat, or T is no triangulation; T is then half done
+bool Triangulation<2>::remove_by_flips(int site, const Site2* places) {
+  // Entry k: the edge to ring_[k], and the corner at `site` in the triangle on its left.
+  ring_.clear();
+  spokes_.clear();
+  topology_.for_each_corner(site, [&](int corner) {
+    ring_.push_back(topology_.source(corner));
+    spokes_.push_back(corner);
+  });
+  const auto neighbour = [&](std::size_t k) { return ring_[k % ring_.size()]; };
+  const auto flip_spoke = [&](std::size_t k) {
+    k %= ring_.size();
+    const int corner = spokes_[k];
+    const int other = spokes_[(k + ring_.size() - 1) % ring_.size()];
+    flip(topology_.prev(corner));
+    touched_.push_back(corner >> 2);
+    touched_.push_back(other >> 2);
+    spokes_[(k + ring_.size() - 1) % ring_.size()] = corner;
+    ring_.erase(ring_.begin() + static_cast<std::ptrdiff_t>(k));
+    spokes_.erase(spokes_.begin() + static_cast<std::ptrdiff_t>(k));
+  };
+  /// First k whose neighbours p, u, q make an ear beyond u; the site lies on the given side of p,
+  /// q.
+  const auto find_ear = [&](int side) {
+    const std::size_t n = ring_.size();
+    std::size_t k = 0;
+    for (; k < n; ++k) {
+      const int p = neighbour(k + n - 1), u = neighbour(k), q = neighbour(k + 1);
+      if ((p | u | q) >= 0 && orientation(places[p], places[u], places[q]) > 0 &&
+          orientation(places[site], places[p], places[q]) == side) {
+        break;
+      }
+    }
+    return k;
+  };
+
+  while (ring_.size() > 3) {
+    const std::size_t n = ring_.size();
+    std::size_t k = find_ear(1);
+    if (k == n && n == 4) k = find_ear(0);
+    if (k == n) {
+      const auto infinity = static_cast<std::size_t>(
+          std::find(ring_.begin(), ring_.end(), Topology2::kInfinite) - ring_.begin());
+      if (infinity == n) return false;
+      if (!topology_.on_hull(neighbour(infinity + 2))) {
+        k = infinity + 1;
+      } else if (!topology_.on_hull(neighbour(infinity + n - 2))) {
+        k = infinity + n - 1;
+      } else {
+        return false;
+      }
+    }
+    flip_spoke(k);
+  }
+  for (const int corner : spokes_) {
+    const bool beyond = topology_.vertex(topology_.twin(corner)) < 0;
+    const bool on_hull = (ring_[0] | ring_[1] | ring_[2]) < 0;
+    if (beyond && on_hull) return false;
+  }
+  topology_.set_corner_of(site, spokes_[0]);
+  touched_.push_back(topology_.remove_degree3(site));
+  if (topology_.infinite(touched_.back())) hull_touched_ = true;
+  ++report_.flips;
+  return true;
+}
+
+/// Makes the hull convex again around the triangles in touched_ from `first` on.
+void Triangulation<2>::close_hull(std::size_t first, const Site2* places) {
+  for (std::size_t k = first; k < touched_.size(); ++k) {
+    const int triangle = touched_[k];
+    if (!topology_.alive(triangle) || !topology_.infinite(triangle)) continue;
+    for (int corner = 4 * triangle; corner < 4 * triangle + 3; ++corner) {
+      const int other = topology_.twin(corner);
+      const int a = topology_.source(corner), b = topology_.target(corner);
+      if (a >= 0 && b >= 0) continue;
+      const int c = topology_.vertex(corner), d = topology_.vertex(other);
+      const bool reflex = a >= 0 ? orientation(places[c], places[a], places[d]) > 0
+                                 : orientation(places[d], places[b], places[c]) > 0;
+      if (!reflex) continue;
+      flip(corner);
+      touched_.push_back(triangle);
+      touched_.push_back(other >> 2);
+      break;
+    }
+  }
+}
+
+/// An inverted triangle at the hull whose inner vertex crossed the hull edge outwards: that vertex
+/// joins the hull when the triangle is dropped. Cheap, and the usual case along a flat floor.
+int Triangulation<2>::crossed_hull_edge(int triangle) const {
+  int found = Topology2::kNone;
+  for (int corner = 4 * triangle; corner < 4 * triangle + 3; ++corner) {
+    if (topology_.vertex(topology_.twin(corner)) >= 0) continue;
+    if (found != Topology2::kNone) return Topology2::kNone;
+    found = corner;
+  }
+  if (found == Topology2::kNone) return found;
+  const Site2 &a = sites_[index(topology_.source(found))],
+              &b = sites_[index(topology_.target(found))];
+  const Site2& c = sites_[index(topology_.vertex(found))];
+  const double from_a = (c.x - a.x) * (b.x - a.x) + (c.y - a.y) * (b.y - a.y);
+  const double from_b = (c.x - b.x) * (a.x - b.x) + (c.y - b.y) * (a.y - b.y);
+  const bool between = from_a > 0 && from_b > 0;
+  return between && !topology_.on_hull(topology_.vertex(found)) ? found : Topology2::kNone;
+}
+
+/// Takes out moved sites, at their old places, until no triangle is inverted at the new ones.
+bool Triangulation<2>::extract_inverted(std::span<const int> moved, bool sweep) {
+  touched_.clear();
+  inverted_.clear();
+  hull_touched_ = sweep;
+  const auto look = [&](int triangle) {
+    const auto [a, b, c] = corners_of(triangle);
+    if (!positive(sites_.data(), a, b, c)) inverted_.push_back(triangle);
+  };
+  if (sweep) {
+    for (int t = 0; t < topology_.slots(); ++t) look(t);
+  } else {
+    const int epoch = next_epoch();
+    for (const int site : moved) {
+      if (topology_.corner_of(site) < 0) continue;
+      topology_.for_each_corner(site, [&](int corner) {
+        if (topology_.source(corner) < 0) hull_touched_ = true;
+        const int triangle = corner >> 2;
+        if (topology_.mark(triangle) == epoch) return;
+        topology_.set_mark(triangle, epoch);
+        look(triangle);
+      });
+    }
+  }
+
+  /// What is left of inverted_, and the triangles made since.
+  const auto look_again = [&](std::size_t first) {
+    pending_.swap(inverted_);
+    inverted_.clear();
+    const int epoch = next_epoch();
+    const auto look_once = [&](int triangle) {
+      if (!topology_.alive(triangle) || topology_.mark(triangle) == epoch) return;
+      topology_.set_mark(triangle, epoch);
+      look(triangle);
+    };
+    for (const int triangle : pending_) look_once(triangle);
+    for (std::size_t k = first; k < touched_.size(); ++k) look_once(touched_[k]);
+  };
+
+  const auto take_out_cover = [&] {
+    for (const int site : cover_) {
+      const int hint = finite_neighbour(site);
+      const std::size_t start = touched_.size();
+      if (!remove_by_flips(site, before_.data())) return false;
+      hide(site, hint);
+      ++report_.extracted;
+      close_hull(start, before_.data());
+    }
+    return true;
+  };
+
+  for (bool may_drop = true;;) {
+    const std::size_t first = touched_.size();
+    const auto hard = std::partition(inverted_.begin(), inverted_.end(), [&](int triangle) {
+      return may_drop && crossed_hull_edge(triangle) != Topology2::kNone;
+    });
+    if (hard == inverted_.end()) {
+      const bool all = std::all_of(inverted_.begin(), inverted_.end(), [&](int triangle) {
+        const int corner = crossed_hull_edge(triangle);
+        if (corner == Topology2::kNone) return false;
+        touched_.push_back(triangle);
+        touched_.push_back(topology_.twin(corner) >> 2);
+        flip(corner);
+        return true;
+      });
+      cover_.clear();
+      if (hull_touched_) choose_folded();
+      if (all && cover_.empty()) return true;
+      // One drop put the inner vertex of the next on the hull, or the hull is folded. The next
+      // sites leave at the old places, so take the drops back.
+      may_drop = false;
+      close_hull(first, before_.data());
+    } else {
+      choose_cover(std::span<const int>(hard, inverted_.end()));
+    }
+    if (!take_out_cover()) return false;
+    look_again(first);
+  }
+}
+
+/// Moved sites at which the hull turns right by more than 90 degrees, or their neighbours along the
+/// hull. Such a hull may cross itself, and flips would not unfold it. (The measure may be rough: a
+/// hull that slips through fails the last test.)
+void Triangulation<2>::choose_folded() {
+  topology_.for_each_corner(Topology2::kInfinite, [&](int corner) {
+    const int last = topology_.source(corner), here = topology_.target(corner);
+    const int next = topology_.target(topology_.turn(corner));
+    const Site2 &a = sites_[index(last)], &p = sites_[index(here)], &b = sites_[index(next)];
+    if ((p.x - a.x) * (b.x - p.x) + (p.y - a.y) * (b.y - p.y) > 0) return;
+    if (orientation(a, p, b) < 0) return;  // the corners at infinity go round clockwise
+    for (const int id : {here, last, next}) {
+      if (!moved_place(id)) continue;
+      if (std::find(cover_.begin(), cover_.end(), id) == cover_.end()) cover_.push_back(id);
+      break;
+    }
+  });
+}
+
+/// A small set of moved sites with at least one in each of the triangles: where there is a choice,
+/// the site that occurs most often, as one that strayed far inverts several.
+void Triangulation<2>::choose_cover(std::span<const int> triangles) {
+  constexpr int kChosen = -1;
+  cover_.clear();
+  for (const int triangle : triangles) {
+    for (const int id : corners_of(triangle)) {
+      if (moved_place(id)) ++site_count_[index(id)];
+    }
+  }
+  for (const int triangle : triangles) {
+    int best = -1;
+    bool covered = false;
+    for (const int id : corners_of(triangle)) {
+      if (!moved_place(id)) continue;
+      if (site_count_[index(id)] == kChosen) covered = true;
+      if (best < 0 || site_count_[index(id)] > site_count_[index(best)]) best = id;
+    }
+    if (covered) continue;
+    site_count_[index(best)] = kChosen;
+    cover_.push_back(best);
+  }
+  for (const int triangle : triangles) {
+    for (const int id : corners_of(triangle)) {
+      if (id >= 0) site_count_[index(id)] = 0;
+    }
+  }
+}
+
+// ---- Putting in --------------------------------------------------------------------------------
+
+/// A visible site to start from, found along the hints.
+int Triangulation<2>::visible_from(int site) const {
+  int hint = site;
+  for (int step = 0; step < 64; ++step) {
+    const int note = topology_.corner_of(hint);
+    if (note >= 0) return hint;
+    if (note == Topology2::kNone || -2 - note >= size()) break;
+    hint = -2 - note;
+  }
+  const int corner = topology_.corner_of(Topology2::kInfinite);
+  return topology_.source(corner);
+}
+
+/// The triangle that holds the site, by a walk over edges that have it strictly beyond; infinite
+/// if it lies outside. The walk ends because T is regular.
+int Triangulation<2>::locate(int site, int hint) const {
+  int triangle = topology_.corner_of(hint) >> 2;
+  for (int corner = 4 * triangle; corner < 4 * triangle + 3; ++corner) {
+    if (topology_.vertex(corner) < 0) {
+      triangle = topology_.twin(corner) >> 2;
+      break;
+    }
+  }
+  int came = Topology2::kNone;
+  for (bool walking = true; walking && !topology_.infinite(triangle);) {
+    walking = false;
+    for (int corner = 4 * triangle; corner < 4 * triangle + 3; ++corner) {
+      if (corner == came) continue;
+      const int a = topology_.source(corner), b = topology_.target(corner);
+      if (orientation(sites_[index(a)], sites_[index(b)], sites_[index(site)]) < 0) {
+        came = topology_.twin(corner);
+        triangle = came >> 2;
+        walking = true;
+        break;
+      }
+    }
+  }
+  return triangle;
+}
+
+/// Inserts a site that has no triangle, by starring the region in conflict with it, and hides the
+/// sites inside that region. False, and a fresh hint, if the site is hidden itself.
+/// @pre T is regular
+bool Triangulation<2>::insert_visible(int site) {
+  const int start = locate(site, visible_from(site));
+  if (!topology_.infinite(start) && !conflict(start, site)) {
+    topology_.set_corner_of(site, -2 - topology_.vertex(4 * start));
+    return false;
+  }
+  const int epoch = next_epoch();
+  hole_.assign(1, start);
+  rim_.clear();
+  topology_.set_mark(start, epoch);
+  for (std::size_t k = 0; k < hole_.size(); ++k) {
+    const int triangle = hole_[k];
+    for (int corner = 4 * triangle; corner < 4 * triangle + 3; ++corner) {
+      const int beyond = topology_.twin(corner) >> 2;
+      if (topology_.mark(beyond) == epoch) continue;
+      if (conflict(beyond, site)) {
+        topology_.set_mark(beyond, epoch);
+        hole_.push_back(beyond);
+      } else {
+        rim_.push_back(corner);
+        const int id = topology_.source(corner);
+        if (id >= 0) site_epoch_[index(id)] = epoch;
+      }
+    }
+  }
+  ring_.clear();
+  for (const int triangle : hole_) {
+    for (const int id : corners_of(triangle)) {
+      if (id < 0 || site_epoch_[index(id)] == epoch) continue;
+      site_epoch_[index(id)] = epoch;
+      ring_.push_back(id);
+    }
+  }
+  topology_.star(site, hole_, rim_);
+  for (const int id : ring_) hide(id, site);
+  last_ = site;
+  return true;
+}
+
+/// Tries every hidden site. One pass is enough: an insertion only hides others.
+void Triangulation<2>::try_hidden() {
+  pending_.swap(hidden_);
+  hidden_.clear();
+  for (const int id : pending_) {
+    if (insert_visible(id)) {
+      ++report_.reinserted;
+    } else {
+      hidden_.push_back(id);
+    }
+  }
+}
+
+}  // namespace lagrain

@@ -1,0 +1,44 @@
+#pragma once
+/// @file
+/// Painters: the same display list as pixels, as PDF or as SVG.
+///
+/// Files are written whole or not at all. The same list gives the same bytes, run after run.
+
+#include <lagrain/display_list.hpp>
+
+#include <filesystem>
+
+namespace lagrain {
+
+/// How finely pixels are painted.
+enum class Quality {
+  still,  ///< for figures: four samples a pixel, each with analytic coverage
+  frame,  ///< for video: one sample with analytic coverage, a third of the time
+};
+
+/// Paints the list into pixels; the page becomes round(width * dpi / 72) pixels wide, at least one.
+/// Colours are mixed in sRGB values, as PDF viewers do. May be called from any thread; one call
+/// paints at a time.
+/// @param dpi pixels per inch
+/// @throws SceneError    if the picture is too large for the renderer or OpenGL is missing
+/// @throws ContractError if clips are not balanced, or a label's markup is wrong
+Image paint_rgba(const DisplayList& list, double dpi, Quality quality = Quality::still);
+
+/// Paints the list into a PNG file that knows its resolution.
+/// @throws SceneError that names the file if it cannot be written
+void paint_png(const DisplayList& list, const std::filesystem::path& path, double dpi = 300);
+
+/// Paints the list into a PDF file; text stays text, its fonts are embedded.
+/// @throws SceneError that names the file if it cannot be written
+void paint_pdf(const DisplayList& list, const std::filesystem::path& path);
+
+/// Paints the list into an SVG file, for small figures; glyphs become outlines.
+/// @throws SceneError that names the file if it cannot be written
+void paint_svg(const DisplayList& list, const std::filesystem::path& path);
+
+/// Writes pixels as a PNG file.
+/// @param dpi pixels per inch, kept in the file; 0 for none
+/// @throws SceneError that names the file if it cannot be written
+void write_png(const Image& image, const std::filesystem::path& path, double dpi = 0);
+
+}  // namespace lagrain
