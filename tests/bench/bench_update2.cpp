@@ -92,7 +92,8 @@ void update_against_build(benchmark::State& state) {
   const double updates = static_cast<double>(update_times.size());
   const auto per_update = [&](std::int64_t value) { return static_cast<double>(value) / updates; };
   state.counters["rebuild_over_update"] = median(build_times) / median(update_times);
-  state.counters["ns_per_moved"] = 1e9 * median(update_times) / std::max(1.0, moved_sites / updates);
+  state.counters["ns_per_moved"] =
+      1e9 * median(update_times) / std::max(1.0, moved_sites / updates);
   state.counters["ns_per_built"] = 1e9 * median(build_times) / count;
   state.counters["flips"] = per_update(total.flips);
   state.counters["extracted"] = per_update(total.extracted);
