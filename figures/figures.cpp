@@ -2,15 +2,17 @@
 
 namespace lagrain {
 
-// One line per figure: its drawing function is declared here and defined in its own file.
+// One line per figure: its drawing function is declared here and defined in its own file. Without
+// the renderer there are none.
 
 #ifdef LAGRAIN_RENDER
 namespace figures {
-FigureResult draw_figure1(const FigureOptions&);
-FigureResult draw_figure2(const FigureOptions&);
-FigureResult draw_figure3(const FigureOptions&);
-FigureResult draw_figure4(const FigureOptions&);
+FigureResult draw_figure1(const FigureOptions& options);
+FigureResult draw_figure2(const FigureOptions& options);
+FigureResult draw_figure3(const FigureOptions& options);
+FigureResult draw_figure4(const FigureOptions& options);
 }  // namespace figures
+FigureResult draw_figure5(const FigureOptions& options);
 #endif
 
 const std::vector<Figure>& all_figures() {
@@ -18,9 +20,9 @@ const std::vector<Figure>& all_figures() {
 #ifdef LAGRAIN_RENDER
       {1, "Discs and the edges of their regular triangulation", figures::draw_figure1},
       {2, "Laguerre cells, power, and the weight that finds contacts", figures::draw_figure2},
-      {3, "Overlapping discs: where the detection works and where it stops",
-       figures::draw_figure3},
+      {3, "Overlapping discs: where the detection works and where it stops", figures::draw_figure3},
       {4, "Moving discs: the triangulation before, stale, and maintained", figures::draw_figure4},
+      {5, "Rock fall on an embankment, and its force chains", draw_figure5},
 #endif
   };
   return all;
