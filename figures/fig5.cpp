@@ -286,9 +286,9 @@ Plot energy_plot(const Record& record) {
   const std::array<std::string, 5> names{"kinetic", "elastic", "dashpots", "friction",
                                          "given by gravity"};
   std::vector<Series> series;
-  for (int k = 0; k < 5; ++k) {
-    series.push_back(series_style(k));
-    series.back().name = names[static_cast<std::size_t>(k)];
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    series.push_back(series_style(static_cast<int>(k)));
+    series.back().name = names[k];
   }
   const Ledger& start = record.ledger.front();
   for (std::size_t k = 0; k < record.ledger.size(); ++k) {
@@ -419,7 +419,7 @@ FigureResult draw_figure5(const FigureOptions& options) {
       {"overlap (the paper: in practice, of the size of the grains)", "about 1 %",
        percent(record.peak_statistics.mean_overlap) + " mean at the largest force, " +
            percent(last.mean_overlap) + " at the end (of the smaller radius)"}};
-  result.facts = facts(*run);
+  for (auto& [name, value] : facts(*run)) result.facts.push_back({name, value});
   result.facts.push_back({"largest force on the slab", rounded(1e-3 * record.peak_force) + " kN per metre"});
   result.facts.push_back(
       {"penetration of the rock", rounded(record.bed_surface - record.deepest_rock) + " m"});
