@@ -690,11 +690,11 @@ class Reader {
       if (const toml::node* along = s.find("along")) {
         s.refuse("to", "either to or along");
         wall = Wall<Dim>::segment(name, from, from);
-        wall.shape = Segment<Dim>{quantities<Dim>(file_, *along, s.path("along"), kLength)};
+        wall.shape = WallSegment<Dim>{quantities<Dim>(file_, *along, s.path("along"), kLength)};
       } else {
         wall = Wall<Dim>::segment(name, from, s.vector<Dim>("to", kLength));
       }
-      if (std::get<Segment<Dim>>(wall.shape).along.isZero(0)) {
+      if (std::get<WallSegment<Dim>>(wall.shape).along.isZero(0)) {
         file_.fail(s.table(), s.path("to"), "expected another point than from");
       }
     } else {
@@ -1010,7 +1010,7 @@ std::string to_toml(const Scene<Dim>& scene) {
     } else {
       line("from", list(wall.home), "m");
       // `to` could not promise the same bits: to - from is rounded.
-      line("along", list(std::get<Segment<Dim>>(wall.shape).along), "m");
+      line("along", list(std::get<WallSegment<Dim>>(wall.shape).along), "m");
     }
     out += motion_text(wall);
   }

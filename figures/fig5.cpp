@@ -27,29 +27,31 @@ namespace lagrain {
 namespace {
 
 constexpr int kLayers = 8;
-constexpr double kImpactWindow = 0.6;   // of the strip and the plots, after the impact [s]
-constexpr double kFrameEvery = 0.004;   // simulated time between video frames [s]
-constexpr double kPercentile = 0.999;   // of the forces: stronger ones are drawn no thicker
+constexpr double kImpactWindow = 0.6;  // of the strip and the plots, after the impact [s]
+constexpr double kFrameEvery = 0.004;  // simulated time between video frames [s]
+constexpr double kPercentile = 0.999;  // of the forces: stronger ones are drawn no thicker
 
 struct Snapshot {
   double time = 0;  ///< [s]
   Columns<2> position;
 };
 
+/// Grains placed by hand come first, and the rock is the only one.
+constexpr int kRock = 0;
+
 /// What is kept of the run.
 struct Record {
-  int rock = 0;             ///< number of the rock
-  double impact = -1;       ///< when the rock first touches the bed [s]
-  std::vector<int> layer;   ///< of each grain just before the impact; -1 for the rock
-  std::vector<double> time, slab_force;           ///< [s], [N], downwards
-  std::vector<double> ledger_time;                ///< [s]
+  double impact = -1;                    ///< when the rock first touches the bed [s]
+  std::vector<int> layer;                ///< of each grain just before the impact; -1 for the rock
+  std::vector<double> time, slab_force;  ///< [s], [N], downwards
+  std::vector<double> ledger_time;       ///< [s]
   std::vector<Ledger> ledger;
-  Snapshot peak;                                  ///< at the largest force on the slab after impact
-  double peak_force = 0;                          ///< [N]
+  Snapshot peak;          ///< at the largest force on the slab after impact
+  double peak_force = 0;  ///< [N]
   std::vector<ContactRecord<2>> peak_contacts;
   ContactStatistics peak_statistics;
-  double bed_surface = 0;                         ///< before the impact [m]
-  double deepest_rock = 1e300;                    ///< lowest point that the rock's underside reaches [m]
+  double bed_surface = 0;       ///< before the impact [m]
+  double deepest_rock = 1e300;  ///< lowest point that the rock's underside reaches [m]
   std::vector<Snapshot> strip;
 };
 
@@ -81,7 +83,7 @@ void add_layers(DisplayList& list, const Panel& panel, const Run<2>& run, const 
                 const Snapshot& at) {
   list.add(PushClip{panel.box()});
   for (int i = 0; i < run.count(); ++i) {
-    const bool rock = i == record.rock;
+    const bool rock = i == kRock;
     Disc disc{panel.point(at.position.col(i)), panel.length(run.radii()[i]),
               record.layer.empty() ? (rock ? layer_colour(-1) : style::kGrain)
                                    : layer_colour(record.layer[static_cast<std::size_t>(i)])};
@@ -132,9 +134,7 @@ void add_forces(DisplayList& list, const Panel& panel, const Run<2>& run, const 
 class Recorder {
  public:
   Recorder(Run<2>& run, const FigureOptions& options)
-      : run_(run), options_(options), video_(options.out / "fig5.mp4", 25) {
-    record_.rock = run.count() - 1;
-  }
+      : run_(run), options_(options), video_(options.out / "fig5.mp4", 25) {}
 
   Record run() {
     while (!run_.finished()) {
@@ -174,9 +174,7 @@ class Recorder {
   }
 
  private:
-  double underside() const {
-    return run_.positions()(1, record_.rock) - run_.radii()[record_.rock];
-  }
+  double underside() const { return run_.positions()(1, kRock) - run_.radii()[kRock]; }
 
   void after_step() {
     const std::int64_t step = run_.steps();
@@ -210,19 +208,19 @@ class Recorder {
 
   void keep(std::vector<Snapshot>& where) { where.push_back({run_.time(), run_.positions()}); }
 
-  /// The impact is taken to begin one hundredth of a second before the rock reaches the bed's
+  /// The impact is foreseen some 0.03 s before the rock reaches the bed's
   /// surface; the layers are those of that moment.
   void watch_for_impact() {
     const Columns<2>& x = run_.positions();
     double surface = 0;
-    const double middle = x(0, record_.rock);
-    const double reach = run_.radii()[record_.rock];
-    for (int i = 0; i < record_.rock; ++i) {
+    const double middle = x(0, kRock);
+    const double reach = run_.radii()[kRock];
+    for (int i = kRock + 1; i < run_.count(); ++i) {
       if (std::abs(x(0, i) - middle) < reach) {
         surface = std::max(surface, x(1, i) + run_.radii()[i]);
       }
     }
-    const double speed = std::abs(run_.velocities()(1, record_.rock));
+    const double speed = std::abs(run_.velocities()(1, kRock));
     if (underside() - surface > 0.03 * speed) return;
     record_.impact = run_.time() + (underside() - surface) / speed;
     record_.bed_surface = surface;
@@ -230,13 +228,13 @@ class Recorder {
 
     // Layers of equal thickness over the height of the bed, whose surface we take as the 99 %
     // quantile of the heights: single stones lie higher.
-    std::vector<double> heights(static_cast<std::size_t>(record_.rock));
-    for (int i = 0; i < record_.rock; ++i) heights[static_cast<std::size_t>(i)] = x(1, i);
+    std::vector<double> heights;
+    for (int i = kRock + 1; i < run_.count(); ++i) heights.push_back(x(1, i));
     const auto at = static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(heights.size() - 1));
     std::nth_element(heights.begin(), heights.begin() + at, heights.end());
     const double top = heights[static_cast<std::size_t>(at)];
     record_.layer.assign(static_cast<std::size_t>(run_.count()), -1);
-    for (int i = 0; i < record_.rock; ++i) {
+    for (int i = kRock + 1; i < run_.count(); ++i) {
       record_.layer[static_cast<std::size_t>(i)] =
           std::clamp(static_cast<int>(x(1, i) / top * kLayers), 0, kLayers - 1);
     }
@@ -247,8 +245,10 @@ class Recorder {
     const Panel panel({{4, 4}, {636, 350}}, world_window(run_));
     add_layers(list, panel, run_, record_, {run_.time(), run_.positions()});
     const double ms = 1000 * (run_.time() - record_.impact);
-    list.add(Label{.text = "$t$ = " + std::to_string(std::lround(ms)) + " ms",
-                   .at = {14, 346}, .size = 14, .along = Along::top});
+    list.add(Label{.text = "$t = " + std::to_string(std::lround(ms)) + "$ ms",
+                   .at = {14, 346},
+                   .size = 14,
+                   .along = Along::top});
     video_.add(paint_rgba(list, 144, Quality::frame));
   }
 
@@ -286,22 +286,24 @@ Plot energy_plot(const Record& record) {
   const std::array<std::string, 5> names{"kinetic", "elastic", "dashpots", "friction",
                                          "given by gravity"};
   std::vector<Series> series;
-  for (int k = 0; k < 5; ++k) {
-    series.push_back(series_style(k));
-    series.back().name = names[static_cast<std::size_t>(k)];
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    series.push_back(series_style(static_cast<int>(k)));
+    series.back().name = names[k];
   }
   const Ledger& start = record.ledger.front();
+  double highest = 0;
   for (std::size_t k = 0; k < record.ledger.size(); ++k) {
     const Ledger& l = record.ledger[k];
     const std::array<double, 5> values{l.kinetic, l.elastic, l.dashpot, l.friction,
                                        start.gravity - l.gravity};
+    highest = std::max(highest, 1e-3 * values.back());  // room for the legend above
     for (std::size_t s = 0; s < values.size(); ++s) {
       series[s].x.push_back(record.ledger_time[k]);
       series[s].y.push_back(1e-3 * values[s]);
     }
   }
   return {.x = {.label = "time [s]", .low = 0},
-          .y = {.label = "energy [kJ]", .low = 0},
+          .y = {.label = "energy [kJ]", .low = 0, .high = 1.7 * highest},
           .series = series,
           .legend = Corner::top_left};
 }
@@ -341,8 +343,8 @@ DisplayList page(const Run<2>& run, const Record& record) {
                  std::to_string(std::lround(1000 * (record.peak.time - record.impact))) + " ms");
   const double ceiling = force_ceiling(record.peak_contacts);
   std::vector<double> legend = legend_forces(1e-3 * ceiling);
-  add_width_legend(list, {right.low[0] + 12, right.high[1] - 16}, legend, kWidest / (1e-3 * ceiling),
-                   "kN");
+  add_width_legend(list, {right.low[0] + 12, right.high[1] - 16}, legend,
+                   kWidest / (1e-3 * ceiling), "kN");
   add_scale_bar(list, {left.low[0] + 12, left.high[1] - 14}, final_panel, 1, "1 m");
 
   y -= 30 + strip_height;
@@ -351,7 +353,7 @@ DisplayList page(const Run<2>& run, const Record& record) {
     const Box box{{x, y}, {x + strip_width, y + strip_height}};
     add_layers(list, Panel(box, world), run, record, record.strip[k]);
     const long ms = std::lround(1000 * (record.strip[k].time - record.impact));
-    list.add(Label{.text = (k == 0 ? "(c) " : "") + std::to_string(ms) + " ms",
+    list.add(Label{.text = (k == 0 ? "(c) $" : "$") + std::to_string(ms) + "$ ms",
                    .at = {box.low[0], box.high[1] + 4},
                    .size = k == 0 ? style::kTitle : style::kText});
   }
@@ -384,7 +386,9 @@ DisplayList large_panel(const Run<2>& run, const Record& record, bool forces) {
   return list;
 }
 
-std::string percent(double fraction) { return rounded(100 * fraction, 2) + " %"; }
+std::string percent(double fraction) {
+  return rounded(100 * fraction, 2) + " %";
+}
 
 }  // namespace
 
@@ -410,17 +414,21 @@ FigureResult draw_figure5(const FigureOptions& options) {
   result.caption =
       "(a) A rock of 1 t per metre of depth has fallen 5 m onto a bed of " +
       std::to_string(run->count() - 1) +
-      " stones over a slab; colours are horizontal layers just before the impact. (b) Every edge of "
-      "the triangulation that carries a contact, with a thickness proportional to its force, at the "
-      "largest force on the slab; contacts with the walls likewise. The strongest 0.1 % are drawn no "
+      " stones over a slab; colours are horizontal layers just before the impact. (b) Every edge "
+      "of "
+      "the triangulation that carries a contact, with a thickness proportional to its force, at "
+      "the "
+      "largest force on the slab; contacts with the walls likewise. The strongest 0.1 % are drawn "
+      "no "
       "thicker than the next. (c) Strip in time. (d) Force on the slab. (e) Energy ledger.";
   result.comparisons = {
       {"grains", "approx. 20,000", std::to_string(run->count() - 1) + " and the rock"},
       {"overlap (the paper: in practice, of the size of the grains)", "about 1 %",
        percent(record.peak_statistics.mean_overlap) + " mean at the largest force, " +
            percent(last.mean_overlap) + " at the end (of the smaller radius)"}};
-  result.facts = facts(*run);
-  result.facts.push_back({"largest force on the slab", rounded(1e-3 * record.peak_force) + " kN per metre"});
+  for (auto& [name, value] : facts(*run)) result.facts.push_back({name, value});
+  result.facts.push_back(
+      {"largest force on the slab", rounded(1e-3 * record.peak_force) + " kN per metre"});
   result.facts.push_back(
       {"penetration of the rock", rounded(record.bed_surface - record.deepest_rock) + " m"});
   result.facts.push_back(
