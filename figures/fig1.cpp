@@ -51,17 +51,17 @@ DisplayList picture_of(const Figure1& figure) {
   add_outlines(list, view, style::kGrainLine);
   add_triangulation(list, view, figure.contacts);
   const double out = 0.5 * style::kWallLine.width;
-  list.add(Polyline{{Vec<2>(box.low[0] - out, box.high[1]), box.low - Vec<2>(out, out),
-                     Vec<2>(box.high[0] + out, box.low[1] - out),
-                     Vec<2>(box.high[0] + out, box.high[1])},
-                    style::kWallLine});
+  list.add(Polyline{
+      {Vec<2>(box.low[0] - out, box.high[1]), box.low - Vec<2>(out, out),
+       Vec<2>(box.high[0] + out, box.low[1] - out), Vec<2>(box.high[0] + out, box.high[1])},
+      style::kWallLine});
 
-  add_legend_row(list, {box.low[0], kMargin + 4},
-                 {{LegendEntry::Sample::line, kContactLine,
-                   std::to_string(figure.contacts.found.size()) + " edges with a contact"},
-                  {LegendEntry::Sample::line, kEdgeLine,
-                   std::to_string(figure.contacts.edges.size() - figure.contacts.found.size()) +
-                       " without"}});
+  add_legend_row(
+      list, {box.low[0], kMargin + 4},
+      {{LegendEntry::Sample::line, kContactLine,
+        std::to_string(figure.contacts.found.size()) + " edges with a contact"},
+       {LegendEntry::Sample::line, kEdgeLine,
+        std::to_string(figure.contacts.edges.size() - figure.contacts.found.size()) + " without"}});
   add_scale_bar(list, {box.high[0] - panel.length(0.02) - 1, kMargin + 3}, panel, 0.02, "2 cm");
   return list;
 }
@@ -84,21 +84,21 @@ FigureResult draw_figure1(const FigureOptions& options) {
   write_csv(options.out / "fig1_edges.csv", "i[-],j[-],contact[-],overlap[m]", edges);
 
   const auto n = static_cast<std::size_t>(scene.discs.size());
-  const double per_contact =
-      static_cast<double>(figure.contacts.edges.size()) / static_cast<double>(figure.contacts.found.size());
+  const double per_contact = static_cast<double>(figure.contacts.edges.size()) /
+                             static_cast<double>(figure.contacts.found.size());
   FigureResult result;
   result.caption =
       std::to_string(n) +
       " discs at rest in an open box and the edges of their regular triangulation, weight r^2. "
       "Thick: the edges that carry a contact; there is no contact without an edge. The discs fell "
-      "under gravity, with friction, for " + number(scene.time) + " s.";
+      "under gravity, with friction, for " +
+      number(scene.time) + " s.";
   result.comparisons = {
       {"discs", "24", std::to_string(n)},
       {"edges", "not given; linear in n: 3 n - 3 - hull",
        std::to_string(figure.contacts.edges.size()) + " = 3 x " + std::to_string(n) + " - 3 - " +
            std::to_string(figure.hull)},
-      {"contacts without an edge", "none",
-       std::to_string(figure.contacts.missed.size())}};
+      {"contacts without an edge", "none", std::to_string(figure.contacts.missed.size())}};
   result.facts = {
       {"edges of T", std::to_string(figure.contacts.edges.size())},
       {"edges on the convex hull", std::to_string(figure.hull)},

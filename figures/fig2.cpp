@@ -62,7 +62,8 @@ void add_cells_and_power(DisplayList& list, const Figure2& figure, const Box& ar
   add_symbol(list, "$x$", x + Vec<2>(7, 0));
   add_sites(list, view, 1.6);
 
-  constexpr std::array<double, 4> kDirection{170, -50, 45, 130};  // of S_i from its centre [degrees]
+  constexpr std::array<double, 4> kDirection{170, -50, 45,
+                                             130};  // of S_i from its centre [degrees]
   const std::array<Vec<2>, 4> kCell{Vec<2>(0.07, 0.1), Vec<2>(0.93, 0.1), Vec<2>(0.93, 0.87),
                                     Vec<2>(0.07, 0.87)};
   for (int i = 0; i < 4; ++i) {
@@ -127,8 +128,7 @@ Figure2 make_figure2() {
   figure.x = {0.47, 0.12};
   figure.tangent_point =
       tangent_point(figure.cells.discs.at(0), figure.cells.discs.radius[0], figure.x);
-  const Discs discs =
-      make_discs({{-9.99, 0, 10}, {9.99, 0, 10}, {0, 4.7, 1}, {0, -4.7, 1}});
+  const Discs discs = make_discs({{-9.99, 0, 10}, {9.99, 0, 10}, {0, 4.7, 1}, {0, -4.7, 1}});
   figure.squares = find_contacts(discs);
   figure.roots = find_contacts(discs, discs.radius.array().sqrt());
   return figure;
@@ -146,9 +146,11 @@ DisplayList picture_of(const Figure2& figure) {
   const double x = kMargin + left + kBetween;
   add_cells_and_power(list, figure, {{kMargin, bottom}, {kMargin + left, top}});
   add_misprint(list, figure.squares, {{x, top - small}, {x + right, top}},
-               "(b) weight $r^2$: edge 0\xE2\x80\x93" "1 finds the contact");
+               "(b) weight $r^2$: edge 0\xE2\x80\x93"
+               "1 finds the contact");
   add_misprint(list, figure.roots, {{x, bottom}, {x + right, bottom + small}},
-               "(c) weight $r^{1/2}$: edge 2\xE2\x80\x93" "3, the contact is missed");
+               "(c) weight $r^{1/2}$: edge 2\xE2\x80\x93"
+               "3, the contact is missed");
   add_legend_row(list, {kMargin, kMargin + 5},
                  {{LegendEntry::Sample::line, kEdgeLine, "edge of T"},
                   {LegendEntry::Sample::line, style::kCellLine, "between cells"},
@@ -165,9 +167,8 @@ FigureResult draw_figure2(const FigureOptions& options) {
   double panel = 0;
   for (const Found* found : {&figure.cells, &figure.squares, &figure.roots}) {
     for (int i = 0; i < found->discs.size(); ++i) {
-      discs.push_back({panel, static_cast<double>(i), found->discs.at(i)[0],
-                       found->discs.at(i)[1], found->discs.radius[i],
-                       found->triangulation.weight(i)});
+      discs.push_back({panel, static_cast<double>(i), found->discs.at(i)[0], found->discs.at(i)[1],
+                       found->discs.radius[i], found->triangulation.weight(i)});
     }
     append_edges(edges, panel, *found);
     ++panel;
@@ -183,11 +184,13 @@ FigureResult draw_figure2(const FigureOptions& options) {
   };
   FigureResult result;
   result.caption =
-      "(a) Discs, their Laguerre cells and the edges of the regular triangulation, which joins discs "
+      "(a) Discs, their Laguerre cells and the edges of the regular triangulation, which joins "
+      "discs "
       "whose cells share a border. The power of x to S1 is the square of the tangent's length. The "
       "weight of a disc is the square of its radius. (b) Discs 0 and 1 (r = 10) overlap by 0.02; "
       "discs 2 and 3 have r = 1. With weight r^2 the edge 0-1 is there, and the contact is found. "
-      "(c) The same discs with weight r^(1/2), as Theorem 2.1 of the paper has it by a slip: the edge "
+      "(c) The same discs with weight r^(1/2), as Theorem 2.1 of the paper has it by a slip: the "
+      "edge "
       "is 2-3, and the contact is missed. Squares: the middle, 0.1 wide.";
   result.comparisons = {
       {"weight in Theorem 2.1", "square root of r (its proof: r^2)", "r^2"},

@@ -1,7 +1,7 @@
 // Figure 3 of the paper: Laguerre cells and the regular triangulation of overlapping discs. The
-// overlaps are exaggerated, the detection still works. Beside it the case where it stops: four equal
-// discs in a square, whose sides overlap by 2 - sqrt 2 = 0.5858 of the radius, just below and just
-// above.
+// overlaps are exaggerated, the detection still works. Beside it the case where it stops: four
+// equal discs in a square, whose sides overlap by 2 - sqrt 2 = 0.5858 of the radius, just below and
+// just above.
 //
 // Writes fig3.png, fig3.pdf, fig3_discs.csv and fig3_edges.csv.
 
@@ -56,7 +56,8 @@ void add_square(DisplayList& list, const Found& found, const Vec<2>& low, const 
 
   const Vec<2> corner(low[0] + kSquare + 16, low[1] + 0.5 * (kSquare - kWindow));
   const Box window{corner, corner + Vec<2>(kWindow, kWindow)};
-  add_zoom(list, found, {.page = window, .middle = {0, 0}, .width = kZoomed, .label = "0.0008 wide"});
+  add_zoom(list, found,
+           {.page = window, .middle = {0, 0}, .width = kZoomed, .label = "0.0008 wide"});
   add_magnifier(list, panel.point({0, 0}), 1.5, window);
 
   const auto row = [&](double y, const std::string& left, const std::string& right) {
@@ -72,8 +73,14 @@ void add_square(DisplayList& list, const Found& found, const Vec<2>& low, const 
   const double y = window.centre()[1];
   row(y + 17, "overlap / $r$", "");
   row(y + 5, "sides", "$" + fixed(overlap_share(found.discs, {0, 2}), 5) + "$");
-  row(y - 6, "0\xE2\x80\x93" "1", "$" + fixed(overlap_share(found.discs, {0, 1}), 5) + "$");
-  row(y - 17, "2\xE2\x80\x93" "3", "$" + fixed(overlap_share(found.discs, {2, 3}), 5) + "$");
+  row(y - 6,
+      "0\xE2\x80\x93"
+      "1",
+      "$" + fixed(overlap_share(found.discs, {0, 1}), 5) + "$");
+  row(y - 17,
+      "2\xE2\x80\x93"
+      "3",
+      "$" + fixed(overlap_share(found.discs, {2, 3}), 5) + "$");
 }
 
 }  // namespace
@@ -129,12 +136,15 @@ DisplayList picture_of(const Figure3& figure) {
   const View view{panel, discs};
   add_cells_and_discs(list, view, figure.overlapping.triangulation);
   add_triangulation(list, view, figure.overlapping);
-  add_heading(list, panel.box(), "(a) overlaps up to " + number(deepest(figure.overlapping), 2) +
-                                     " of the smaller radius");
+  add_heading(
+      list, panel.box(),
+      "(a) overlaps up to " + number(deepest(figure.overlapping), 2) + " of the smaller radius");
 
   const double x = kMargin + left + kBetween;
   add_square(list, figure.below, {x, top - kSquare}, "(b) just below 0.5858: found");
-  add_square(list, figure.above, {x, bottom}, "(c) just above: contact 0\xE2\x80\x93" "1 is missed");
+  add_square(list, figure.above, {x, bottom},
+             "(c) just above: contact 0\xE2\x80\x93"
+             "1 is missed");
   add_legend_row(list, {kMargin, kMargin + 5},
                  {{LegendEntry::Sample::line, kEdgeLine, "edge of T"},
                   {LegendEntry::Sample::line, style::kCellLine, "between cells"},
@@ -151,8 +161,8 @@ FigureResult draw_figure3(const FigureOptions& options) {
   double panel = 0;
   for (const Found* found : {&figure.overlapping, &figure.below, &figure.above}) {
     for (int i = 0; i < found->discs.size(); ++i) {
-      discs.push_back({panel, static_cast<double>(i), found->discs.at(i)[0],
-                       found->discs.at(i)[1], found->discs.radius[i]});
+      discs.push_back({panel, static_cast<double>(i), found->discs.at(i)[0], found->discs.at(i)[1],
+                       found->discs.radius[i]});
     }
     for (const Pair& edge : found->edges) {
       edges.push_back({panel, static_cast<double>(edge.i), static_cast<double>(edge.j), 1.0,
@@ -171,16 +181,20 @@ FigureResult draw_figure3(const FigureOptions& options) {
   const auto found = [](const Found& f) { return holds(f.found, {0, 1}) ? "found" : "missed"; };
   FigureResult result;
   result.caption =
-      "(a) Overlapping discs, cells and regular triangulation, weight r^2: every contact is an edge. "
+      "(a) Overlapping discs, cells and regular triangulation, weight r^2: every contact is an "
+      "edge. "
       "(b, c) Four equal discs, r = 1, in a square: the detection is proved up to overlaps of "
       "2 - sqrt 2 = 0.5858 of the smaller radius. (b) Sides overlap by " +
       fixed(overlap_share(figure.below.discs, {0, 2}), 5) + ": contact 0-1 is found. (c) By " +
       fixed(overlap_share(figure.above.discs, {0, 2}), 5) +
-      ": 0-1 and 2-3 both touch, but only one of them can be an edge, and 0-1 is missed. Squares: the "
-      "middle, " + number(kZoomed) + " wide.";
+      ": 0-1 and 2-3 both touch, but only one of them can be an edge, and 0-1 is missed. Squares: "
+      "the "
+      "middle, " +
+      number(kZoomed) + " wide.";
   result.comparisons = {
-      {"overlaps in practice", "about 1 % of the grains' size", "drawn here: up to " +
-           number(100 * deepest(figure.overlapping), 2) + " % of the smaller radius"},
+      {"overlaps in practice", "about 1 % of the grains' size",
+       "drawn here: up to " + number(100 * deepest(figure.overlapping), 2) +
+           " % of the smaller radius"},
       {"contacts missed in (a)", "none", std::to_string(figure.overlapping.missed.size())},
       {"side overlap where it stops", "not given (slightly overlap)", "0.58579 (2 - sqrt 2)"}};
   result.facts = {

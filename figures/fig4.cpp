@@ -1,8 +1,8 @@
 // Figure 4 of the paper: "As the spheres move, the original Delaunay triangulation may fail to
 // detect contacts. Maintaining the triangulation is mandatory: a new edge appears while another one
 // disappears." Discs fly and collide in a box. (a) T and the discs; (b) the discs after a move with
-// the old edges, which miss a contact; (c) T moved along: one edge has gone, and the new one carries
-// that contact. A video shows T maintained from frame to frame.
+// the old edges, which miss a contact; (c) T moved along: one edge has gone, and the new one
+// carries that contact. A video shows T maintained from frame to frame.
 //
 // Writes fig4.png, fig4.pdf, fig4.mp4 (or a folder of frames), fig4_discs.csv, fig4_edges.csv and
 // fig4_film.csv.
@@ -26,9 +26,9 @@ namespace lagrain::figures {
 namespace {
 
 constexpr int kCount = 16;
-constexpr double kFlight = 1;         // searched of each seed [s]
+constexpr double kFlight = 1;  // searched of each seed [s]
 constexpr std::uint64_t kSeeds = 200;
-constexpr double kLeastMove = 0.3;    // of the mean radius, mean over the discs
+constexpr double kLeastMove = 0.7;  // of the mean radius, mean over the discs
 
 constexpr double kMargin = 3;    // around everything [pt]
 constexpr double kHeading = 15;  // above a panel [pt]
@@ -245,8 +245,9 @@ DisplayList picture_of(const FilmFrame& frame, double side) {
     add_dashed_edges(list, view, {edge}, {with_alpha(style::kEdgeGone, left), 1.6});
   }
   for (const auto& [edge, age] : frame.fresh) {
-    add_edges(list, view, {edge}, {faded(style::kEdgeNew, style::kEdge, age),
-                                   std::lerp(3.5, 1.0, std::min(age / kFade, 1.0))});
+    add_edges(list, view, {edge},
+              {faded(style::kEdgeNew, style::kEdge, age),
+               std::lerp(3.5, 1.0, std::min(age / kFade, 1.0))});
   }
   for (const auto& [pair, age] : frame.touched) {
     if (!holds(frame.edges, pair)) continue;
@@ -334,11 +335,16 @@ FigureResult draw_figure4(const FigureOptions& options) {
   FigureResult result;
   result.caption =
       std::to_string(kCount) +
-      " discs that fly and collide elastically in a box. (a) The discs and their regular triangulation "
-      "T; arrows: the move that follows. (b) After the move, the edges of (a): one contact lies on no "
-      "edge (ring) and would be missed. (c) T moved with the discs: one edge has disappeared, the one "
-      "that appeared carries the contact. Seed and move were searched: the first seed, and in it the "
-      "longest move, that exchange exactly one edge. Video: T maintained, " +
+      " discs that fly and collide elastically in a box. (a) The discs and their regular "
+      "triangulation "
+      "T; arrows: the move that follows. (b) After the move, the edges of (a): one contact lies on "
+      "no "
+      "edge (ring) and would be missed. (c) T moved with the discs: one edge has disappeared, the "
+      "one "
+      "that appeared carries the contact. Seed and move were searched: the first seed, and in it "
+      "the "
+      "longest move, that exchange exactly one edge while another contact stays found. Video: T "
+      "maintained, " +
       std::to_string(last.flips) + " flips in " + number(last.time, 3) + " s; " +
       std::to_string(last.contacts) + " collisions, of which T misses " +
       std::to_string(last.missed) + " and T of time 0 would miss " +
@@ -350,15 +356,14 @@ FigureResult draw_figure4(const FigureOptions& options) {
        std::to_string(without(figure.after.found, figure.stale).size()) + " of " +
            std::to_string(figure.after.found.size())},
       {"contacts missed by the maintained T", "none", std::to_string(figure.after.missed.size())}};
-  result.facts = {
-      {"seed", std::to_string(figure.seed)},
-      {"move", "from " + fixed(1e3 * figure.before_time, 0) + " to " +
-                   fixed(1e3 * figure.after_time, 0) + " ms; mean " +
-                   number(figure.mean_move, 2) + " of the mean radius"},
-      {"flips of that move", std::to_string(figure.update.flips)},
-      {"largest overlap in the video",
-       number(100 * flight.largest_overlap, 2) + " % of the smaller radius"},
-      {"energy drift in the video", number(100 * flight.energy_drift, 2) + " %"}};
+  result.facts = {{"seed", std::to_string(figure.seed)},
+                  {"move", "from " + fixed(1e3 * figure.before_time, 0) + " to " +
+                               fixed(1e3 * figure.after_time, 0) + " ms; mean " +
+                               number(figure.mean_move, 2) + " of the mean radius"},
+                  {"flips of that move", std::to_string(figure.update.flips)},
+                  {"largest overlap in the video",
+                   number(100 * flight.largest_overlap, 2) + " % of the smaller radius"},
+                  {"energy drift in the video", number(100 * flight.energy_drift, 2) + " %"}};
   result.pictures = {"fig4.png", report.path};
   result.downloads = {"fig4.pdf", "fig4_discs.csv", "fig4_edges.csv", "fig4_film.csv"};
   return result;

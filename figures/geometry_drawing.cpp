@@ -55,8 +55,7 @@ CutDisc cut_disc(const Vec<2>& centre, double radius, const Box& box) {
     cut.arc.push_back(on_circle(angle));
   }
   for (int k = 1; k < kCoarse; ++k) {
-    cut.area.push_back(
-        on_circle(middle + reach + 2 * (std::numbers::pi - reach) * k / kCoarse));
+    cut.area.push_back(on_circle(middle + reach + 2 * (std::numbers::pi - reach) * k / kCoarse));
   }
   cut.area = left_of(cut.area, box.low, {1, 0});
   cut.area = left_of(cut.area, box.high, {-1, 0});
@@ -171,10 +170,10 @@ void add_zoom(DisplayList& list, const Found& found, const Zoom& zoom) {
       const Vec<2> from = found.discs.at(i);
       const Vec<2> foot = from + (zoom.middle - from).dot(along) * along;
       if (!window.contains(foot)) continue;
-      list.add(Polyline{
-          {panel.point(foot - zoom.width * along), panel.point(foot + zoom.width * along)},
-          stroke,
-          dashes});
+      list.add(
+          Polyline{{panel.point(foot - zoom.width * along), panel.point(foot + zoom.width * along)},
+                   stroke,
+                   dashes});
     }
   };
   add_lines(without(found.edges, found.found), kEdgeLine, {});
@@ -248,9 +247,8 @@ void add_arrow(DisplayList& list, const Vec<2>& from, const Vec<2>& to, const St
 
 std::string number(double value, int digits) {
   char buffer[32];
-  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general,
-                                 digits)
-                       .ptr;
+  const auto end =
+      std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits).ptr;
   return {buffer, end};
 }
 

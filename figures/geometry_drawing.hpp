@@ -53,16 +53,17 @@ void add_ring(DisplayList& list, const View& view, Pair contact, double radius =
 /// Letter of a panel and what it shows, at the upper left of the box, above it.
 void add_heading(DisplayList& list, const Box& box, const std::string& text);
 
-/// Magnified window of a view, clipped to a frame on the page: cells, discs, edges. Circles and edges
-/// may be far larger than the window.
+/// Magnified window of a view, clipped to a frame on the page: cells, discs, edges. Circles and
+/// edges may be far larger than the window.
 struct Zoom {
-  Box page;          ///< square [pt]
-  Vec<2> middle;     ///< of the window [m]
-  double width = 0;  ///< of the window [m]
+  Box page;                ///< square [pt]
+  Vec<2> middle;           ///< of the window [m]
+  double width = 0;        ///< of the window [m]
   std::string label = {};  ///< below
 };
 void add_zoom(DisplayList& list, const Found& found, const Zoom& zoom);
-/// A small square around a place of a picture, and lines from it to its magnified window on the right.
+/// A small square around a place of a picture, and lines from it to its magnified window on the
+/// right.
 void add_magnifier(DisplayList& list, const Vec<2>& at, double half, const Box& window);
 
 /// A line of a legend.

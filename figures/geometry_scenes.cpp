@@ -24,7 +24,9 @@ constexpr double kDensity = 2500;    // [kg/m^3], glass
 constexpr double kDepth = 0.01;      // of the discs, which are slices of rods [m]
 constexpr double kStepShare = 0.05;  // time step over the shortest contact
 
-double disc_mass(double r) { return kDensity * grain_volume<2>(r, kDepth); }
+double disc_mass(double r) {
+  return kDensity * grain_volume<2>(r, kDepth);
+}
 
 double time_step_for(const std::vector<Grain<2>>& grains, double stiffness) {
   double lightest = grains.front().mass;
@@ -34,8 +36,7 @@ double time_step_for(const std::vector<Grain<2>>& grains, double stiffness) {
 }
 
 std::vector<Wall<2>> open_box(double width) {
-  return {Wall<2>::half_space("floor", {0, 0}, {0, 1}),
-          Wall<2>::half_space("left", {0, 0}, {1, 0}),
+  return {Wall<2>::half_space("floor", {0, 0}, {0, 1}), Wall<2>::half_space("left", {0, 0}, {1, 0}),
           Wall<2>::half_space("right", {width, 0}, {-1, 0})};
 }
 
@@ -152,10 +153,10 @@ Settled settle(int count, double smallest, double largest, double width, std::ui
 }
 
 Flight fly(int count, std::uint64_t seed, double duration, double interval) {
-  constexpr double kSide = 0.24;                        // [m]
+  constexpr double kSide = 0.24;                         // [m]
   constexpr double kSmallest = 0.010, kLargest = 0.030;  // radii [m]
-  constexpr double kSpeed = 0.25;                       // [m/s]
-  constexpr double kStiffness = 4e4;                    // [N/m]
+  constexpr double kSpeed = 0.25;                        // [m/s]
+  constexpr double kStiffness = 4e4;                     // [N/m]
 
   // Places at random, largest disc first, so that all find room.
   Random random(seed);
@@ -187,18 +188,18 @@ Flight fly(int count, std::uint64_t seed, double duration, double interval) {
   const int steps = static_cast<int>(std::lround(interval / time_step));
   Simulation<2, LinearSpring, VelocityVerlet<2>, TriangulationNeighbourhood<2>> simulation(
       make_grains<2, LinearSpring::needs>(grains), LawTable<LinearSpring>(LinearSpring{kStiffness}),
-      std::move(walls), {.time_step = time_step},
-      TriangulationNeighbourhood<2>());
+      std::move(walls), {.time_step = time_step}, TriangulationNeighbourhood<2>());
 
-  Flight flight{.radius = simulation.grains().radius, .side = kSide, .interval = interval, .centres = {}};
+  Flight flight{
+      .radius = simulation.grains().radius, .side = kSide, .interval = interval, .centres = {}};
   const double energy = energy_ledger(simulation).balance();
   const int snapshots = static_cast<int>(std::lround(duration / interval));
   for (int k = 0;; ++k) {
     flight.centres.push_back(simulation.grains().position);
     flight.largest_overlap =
         std::max(flight.largest_overlap, contact_statistics(simulation).largest_overlap);
-    flight.energy_drift = std::max(
-        flight.energy_drift, std::abs(energy_ledger(simulation).balance() - energy) / energy);
+    flight.energy_drift = std::max(flight.energy_drift,
+                                   std::abs(energy_ledger(simulation).balance() - energy) / energy);
     if (k == snapshots) break;
     for (int step = 0; step < steps; ++step) simulation.step();
   }

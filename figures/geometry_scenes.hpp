@@ -62,19 +62,19 @@ Found find_contacts(const Discs& discs);
 /// Discs that have come to rest in an open box, 0 <= x <= width, y >= 0.
 struct Settled {
   Discs discs;
-  double width = 0;               ///< [m]
+  double width = 0;  ///< [m]
   std::uint64_t seed = 0;
-  double time = 0;                ///< simulated [s]
-  double time_step = 0;           ///< [s]
+  double time = 0;       ///< simulated [s]
+  double time_step = 0;  ///< [s]
   std::int64_t steps = 0;
-  double stiffness = 0;           ///< [N/m]
-  double friction = 0;            ///< [-]
-  double restitution = 0;         ///< [-]
-  double mean_overlap = 0;        ///< of contacts, over the smaller radius [-]
-  double largest_overlap = 0;     ///< [-]
-  double kinetic_energy = 0;      ///< at the end [J]
-  std::int64_t audited = 0;       ///< contacts found by brute force, over all steps
-  std::int64_t missed = 0;        ///< of these, not found along T
+  double stiffness = 0;        ///< [N/m]
+  double friction = 0;         ///< [-]
+  double restitution = 0;      ///< [-]
+  double mean_overlap = 0;     ///< of contacts, over the smaller radius [-]
+  double largest_overlap = 0;  ///< [-]
+  double kinetic_energy = 0;   ///< at the end [J]
+  std::int64_t audited = 0;    ///< contacts found by brute force, over all steps
+  std::int64_t missed = 0;     ///< of these, not found along T
 };
 
 /// Drops discs of uniformly distributed radii into the box under gravity, with friction.
