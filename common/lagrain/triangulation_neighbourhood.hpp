@@ -53,7 +53,8 @@ struct TriangulationCost {
 template <int Dim, RegularTriangulation<Dim> T = Triangulation<Dim>>
 class TriangulationNeighbourhood {
  public:
-  explicit TriangulationNeighbourhood(Laziness laziness = {}) : laziness_(laziness) {}
+  TriangulationNeighbourhood() = default;
+  explicit TriangulationNeighbourhood(Laziness laziness) : laziness_(laziness) {}
 
   static const char* name() { return "regular triangulation"; }
   const T& triangulation() const { return t_; }
