@@ -143,9 +143,11 @@ std::string to_string(Unit unit) {
   const auto add = [&](const char* name, int power) {
     if (power == 0) return;
     std::string& side = power > 0 ? above : below;
-    side += power > 0 ? (side.empty() ? "" : " ") : "/";
+    side += power < 0 ? "/" : side.empty() ? "" : " ";
     side += name;
-    if (std::abs(power) != 1) side += "^" + std::to_string(std::abs(power));
+    if (std::abs(power) == 1) return;
+    side += '^';
+    side += std::to_string(std::abs(power));
   };
   // What has a name of its own is easier to read.
   if (unit == Unit{1, 1, -2}) return "N";

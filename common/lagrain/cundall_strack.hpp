@@ -16,8 +16,10 @@ namespace lagrain {
 ///     f_t = -(kt xi + gt slip),  |f_t| <= mu f_n,
 ///     kt = ratio x normal stiffness,  gt = 2 zeta_t sqrt(kt m_eff)
 ///
-/// While it slides the spring alone carries the limit, |kt xi| = mu f_n: a large dashpot can then
-/// neither store energy in the spring nor change the impulse of a grazing impact.
+/// The spring is cut at the limit by itself, then its sum with the dashpot is cut again. So a large
+/// dashpot can neither load the spring nor change the impulse of a grazing impact, and friction
+/// never gives energy: with X = kt xi inside the ball of radius mu f_n and P the point of the ball
+/// nearest to X + gt slip, the loss is slip . (P - X) >= |P - X|^2 / gt.
 ///
 /// Source: Cundall & Strack, Geotechnique 29 (1979) 47.
 template <class Normal>
@@ -46,15 +48,8 @@ struct CundallStrack {
     const double gt = 2 * tangential_damping_ratio * std::sqrt(kt * touch.effective_mass);
     Vec<Dim> xi = turned_into_plane<Dim>(memory.stretch, touch.normal);
     const double stored = 0.5 * kt * xi.squaredNorm();
-    xi += time_step * touch.slip;
-
-    Vec<Dim> ft = -(kt * xi + gt * touch.slip);
-    const double limit = friction * fn;
-    const double squared = ft.squaredNorm();
-    if (squared > limit * limit) {
-      ft *= limit / std::sqrt(squared);
-      xi = -ft / kt;
-    }
+    xi = cut<Dim>(xi + time_step * touch.slip, friction * fn / kt);
+    const Vec<Dim> ft = cut<Dim>(-(kt * xi + gt * touch.slip), friction * fn);
     memory.stretch = xi;
     response.force = fn * touch.normal + ft;
     response.friction_loss =
@@ -81,6 +76,13 @@ struct CundallStrack {
   bool conservative() const { return false; }
 
  private:
+  /// v, shortened to at most `length`.
+  template <int Dim>
+  static Vec<Dim> cut(const Vec<Dim>& v, double length) {
+    const double squared = v.squaredNorm();
+    return squared > length * length ? Vec<Dim>(length / std::sqrt(squared) * v) : v;
+  }
+
   /// The stretch follows the contact as it turns: the part along the new normal is dropped and the
   /// length kept.
   template <int Dim>

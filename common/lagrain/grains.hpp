@@ -72,7 +72,8 @@ double grain_inertia(double mass, double radius) {
 }
 
 /// Lays grains out as arrays, forces zero.
-/// @throws ContractError if a radius or mass is not positive and finite, or a number is NaN.
+/// @throws ContractError if a radius or mass is not positive and finite, a number is NaN, a kind
+/// does not fit its byte, or a pinned grain moves.
 template <int Dim, Needs needs>
 Grains<Dim, needs> make_grains(const std::vector<Grain<Dim>>& list) {
   const auto n = static_cast<Eigen::Index>(list.size());
@@ -96,8 +97,13 @@ Grains<Dim, needs> make_grains(const std::vector<Grain<Dim>>& list) {
                     name + "radius " + std::to_string(grain.radius));
     LAGRAIN_EXPECTS(grain.mass > 0 && std::isfinite(grain.mass),
                     name + "mass " + std::to_string(grain.mass));
-    LAGRAIN_EXPECTS(grain.position.allFinite() && grain.velocity.allFinite(),
-                    name + "position or velocity is not a number");
+    LAGRAIN_EXPECTS(
+        grain.position.allFinite() && grain.velocity.allFinite() && grain.omega.allFinite(),
+        name + "position, velocity or spin is not a number");
+    LAGRAIN_EXPECTS(grain.kind >= 0 && grain.kind <= 255,
+                    name + "kind " + std::to_string(grain.kind));
+    LAGRAIN_EXPECTS(!grain.pinned || (grain.velocity.isZero(0) && grain.omega.isZero(0)),
+                    name + "pinned, but moving");
     grains.position.col(i) = grain.position;
     grains.velocity.col(i) = grain.velocity;
     grains.radius[i] = grain.radius;

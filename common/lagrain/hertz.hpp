@@ -68,13 +68,13 @@ struct Hertz {
     return 0.4 * elastic_force(touch) * touch.overlap;
   }
 
-  /// The undamped collision at `impact_speed` lasts 2.9432 delta_max / v, with
+  /// The undamped collision at `impact_speed` lasts 2.94328 delta_max / v, with
   /// delta_max = (5 m v^2 / (4 K))^(2/5) (Johnson, Contact Mechanics, 1985, section 11.4); a linear
   /// spring of that duration has 1 / omega0 = duration / pi.
   double natural_time(double effective_mass, double effective_radius) const {
     const double deepest = std::pow(
         1.25 * effective_mass * impact_speed * impact_speed / coefficient(effective_radius), 0.4);
-    return 2.9432 * deepest / impact_speed / std::numbers::pi;
+    return 2.94328 * deepest / impact_speed / std::numbers::pi;
   }
   double contact_time(double effective_mass, double effective_radius) const {
     return clamped_contact_time(damping_ratio) * natural_time(effective_mass, effective_radius);

@@ -1,6 +1,6 @@
 #include <lagrain/placement.hpp>
 
-#include "support/scenes.hpp"
+#include "support/scene_text.hpp"
 
 #include <doctest/doctest.h>
 

@@ -2,7 +2,7 @@
 
 #include <lagrain/check.hpp>
 
-#include "support/scenes.hpp"
+#include "support/scene_text.hpp"
 
 #include <doctest/doctest.h>
 

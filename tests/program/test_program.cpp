@@ -3,7 +3,7 @@
 
 #include "scene_run.hpp"
 #include "support/cases.hpp"
-#include "support/scenes.hpp"
+#include "support/scene_text.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,0 +1,117 @@
+#include <lagrain/cundall_strack.hpp>
+
+#include <lagrain/random.hpp>
+
+#include <support/cases.hpp>
+#include <support/scenes.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+using namespace lagrain;
+using namespace lagrain::test;
+
+namespace {
+
+template <int Dim>
+Touch<Dim> resting_touch(const Vec<Dim>& normal) {
+  Touch<Dim> touch;
+  touch.normal = normal;
+  touch.overlap = 1e-3;
+  touch.effective_mass = 1;
+  touch.effective_radius = 1;
+  return touch;
+}
+
+}  // namespace
+
+TEST_SUITE("cundall_strack") {
+  TEST_CASE_TEMPLATE("a held contact answers as a spring and a dashpot", C,
+                     Case<2, FrictionalSpring>, Case<3, FrictionalSpring>) {
+    const auto law = make_law<typename C::Law>({.friction = 10, .tangential_damping_ratio = 0.3});
+    Touch<C::Dim> touch = resting_touch<C::Dim>(up<C::Dim>());
+    touch.slip = 1e-2 * along<C::Dim>();
+    typename C::Law::template Memory<C::Dim> memory{};
+
+    Response<C::Dim> response;
+    for (int k = 0; k < 100; ++k) response = law.respond(touch, memory, 1e-5);
+
+    const double kt = 2.0 / 7 * law.normal.stiffness;
+    const double spring = kt * 100 * 1e-5 * 1e-2;
+    const double dashpot = 2 * 0.3 * std::sqrt(kt * 1) * 1e-2;
+    CHECK(-response.force.dot(along<C::Dim>()) == doctest::Approx(spring + dashpot).epsilon(1e-12));
+    CHECK(law.elastic_energy(touch, memory) ==
+          doctest::Approx(0.5 * law.normal.stiffness * 1e-6 + 0.5 * spring * spring / kt)
+              .epsilon(1e-12));
+  }
+
+  TEST_CASE_TEMPLATE(
+      "a sliding contact carries Coulomb's limit against the slip, and its spring no more", C,
+      Case<2, FrictionalSpring>, Case<3, FrictionalSpring>, Case<2, FrictionalHertz>,
+      Case<3, FrictionalHertz>) {
+    for (const double damping : {0.0, 0.5, 2.0}) {
+      CAPTURE(damping);
+      const auto law =
+          make_law<typename C::Law>({.friction = 0.5, .tangential_damping_ratio = damping});
+      Touch<C::Dim> touch = resting_touch<C::Dim>(up<C::Dim>());
+      touch.slip = along<C::Dim>();
+      typename C::Law::template Memory<C::Dim> memory{};
+
+      Response<C::Dim> response;
+      for (int k = 0; k < 1000; ++k) response = law.respond(touch, memory, 1e-4);
+
+      const double limit = 0.5 * law.normal.normal_force(touch);
+      CHECK((response.force - limit / 0.5 * touch.normal + limit * along<C::Dim>()).norm() <
+            1e-13 * limit);
+      CHECK(law.stiffness_ratio * law.normal.stiffness_at(touch) * memory.stretch.norm() ==
+            doctest::Approx(limit).epsilon(1e-13));
+      CHECK(response.friction_loss == doctest::Approx(limit * 1e-4).epsilon(1e-10));
+    }
+  }
+
+  TEST_CASE("the spring turns with the contact plane and keeps its length") {
+    // A quarter turn in steps of a degree about an axis, as seen by a contact that holds.
+    const auto law = make_law<FrictionalSpring>({.friction = 1e9});
+    const auto turned = [&](const auto& normal_at, auto memory, auto dim) {
+      constexpr int Dim = decltype(dim)::value;
+      for (int k = 0; k <= 90; ++k) {
+        const Touch<Dim> touch = resting_touch<Dim>(normal_at(k * std::numbers::pi / 180));
+        law.respond(touch, memory, 1e-5);
+        CHECK(std::abs(memory.stretch.dot(touch.normal)) < 1e-18);
+      }
+      return memory.stretch;
+    };
+    const auto in_plane = [](double a) { return Vec<2>(-std::sin(a), std::cos(a)); };
+    const auto about_second = [](double a) { return Vec<3>(std::sin(a), 0, std::cos(a)); };
+
+    // 90 projections and scalings, each rounding at 1e-16 of 1e-3.
+    CHECK((turned(in_plane, FrictionalSpring::Memory<2>{{1e-3, 0}},
+                  std::integral_constant<int, 2>{}) -
+           Vec<2>(0, 1e-3))
+              .norm() < 1e-16);
+    CHECK((turned(about_second, FrictionalSpring::Memory<3>{{1e-3, 0, 0}},
+                  std::integral_constant<int, 3>{}) -
+           Vec<3>(0, 0, -1e-3))
+              .norm() < 1e-16);
+    // A stretch along the axis of turning stays where it is.
+    CHECK((turned(about_second, FrictionalSpring::Memory<3>{{0, 1e-3, 0}},
+                  std::integral_constant<int, 3>{}) -
+           Vec<3>(0, 1e-3, 0))
+              .norm() < 1e-16);
+  }
+
+  TEST_CASE_TEMPLATE("without friction there is no tangential force, nor memory of one", C,
+                     Case<2, FrictionalSpring>, Case<3, FrictionalHertz>) {
+    const auto law = make_law<typename C::Law>({.friction = 0, .tangential_damping_ratio = 1});
+    Touch<C::Dim> touch = resting_touch<C::Dim>(up<C::Dim>());
+    touch.slip = along<C::Dim>();
+    typename C::Law::template Memory<C::Dim> memory{};
+
+    const Response<C::Dim> response = law.respond(touch, memory, 1e-4);
+
+    CHECK(response.force.dot(along<C::Dim>()) == 0);
+    CHECK(memory.stretch.isZero(0));
+  }
+}
