@@ -102,7 +102,7 @@ class SimulationRun final : public Run<Dim> {
  private:
   void advance() override { sim_.step(); }
   bool near_is_valid() const override {
-    return !sim_.near().expired(sim_.grains().position, sim_.walls());
+    return !sim_.near().expired(sim_.grains().position, sim_.walls(), sim_.time());
   }
 
   TimeScales scales_;
