@@ -121,7 +121,7 @@ TEST_SUITE("gallery") {
     int last = 0;
     for (const Figure& figure : all_figures()) {
       CHECK(figure.number > last);
-      CHECK(figure.draw != nullptr);
+      CHECK((figure.draw != nullptr));
       last = figure.number;
     }
   }

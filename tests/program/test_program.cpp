@@ -15,6 +15,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -56,6 +57,7 @@ class Place {
   pid_t start(const std::vector<std::string>& arguments) const {
     std::vector<std::string> words{LAGRAIN_PROGRAM};
     words.insert(words.end(), arguments.begin(), arguments.end());
+    std::cout.flush();  // or the child would print it once more
     const pid_t child = fork();
     if (child != 0) return child;
     if (std::freopen((path_ / "out").c_str(), "w", stdout) == nullptr ||
