@@ -8,7 +8,10 @@ FigureResult draw_figure5(const FigureOptions& options);
 
 const std::vector<Figure>& all_figures() {
   static const std::vector<Figure> figures{
-      {5, "Rock fall on an embankment, and its force chains", draw_figure5}};
+#ifdef LAGRAIN_WITH_RENDER
+      {5, "Rock fall on an embankment, and its force chains", draw_figure5},
+#endif
+  };
   return figures;
 }
 
