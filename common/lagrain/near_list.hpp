@@ -53,10 +53,12 @@ struct PairTable {
 /// moved further than its margin since the refresh, two grains that touch now were then at a gap of
 /// at most m_i + m_j, so their pair is in the list. The same holds for walls.
 ///
-/// A margin follows the grain's speed, so that a bed at rest is listed almost without surplus and
-/// one fast grain costs only its surroundings; the two constants of that rule adapt to how long
-/// lists last. The choice of margins never changes a result: pairs that do not touch are skipped,
-/// and the order of the others is fixed by the grains' numbers.
+/// Displacements are measured in a frame that moves on with the velocity that most grains had at
+/// the refresh: a common drift wears nothing out. A margin follows the grain's speed in that frame,
+/// so that a bed at rest is listed almost without surplus and one fast grain costs only its
+/// surroundings; the two constants of that rule adapt to how long lists last. The choice of margins
+/// never changes a result: pairs that do not touch are skipped, and the order of the others is
+/// fixed by the grains' numbers.
 template <int Dim, class Memory>
 class NearList {
  public:
@@ -66,29 +68,33 @@ class NearList {
   std::int64_t refreshes() const { return refreshes_; }
 
   /// Whether some grain or wall has left its margin since the last refresh. NaN counts as left.
-  bool expired(const Columns<Dim>& x, const std::vector<Wall<Dim>>& all_walls) const {
+  /// @param t time [s]
+  bool expired(const Columns<Dim>& x, const std::vector<Wall<Dim>>& all_walls, double t) const {
     if (centre_.cols() != x.cols()) return true;
+    const Vec<Dim> shift = (t - time_) * drift_;
     for (std::size_t w = 0; w < all_walls.size(); ++w) {
-      const double moved = (all_walls[w].point - wall_centre_[w]).norm();
+      const double moved = (all_walls[w].point - shift - wall_centre_[w]).norm();
       if (!(moved <= wall_margin_[w])) return true;
     }
     bool inside = true;
     for (Eigen::Index i = 0; i < x.cols(); ++i) {
-      inside &= (x.col(i) - centre_.col(i)).squaredNorm() <= squared_margin_[i];
+      inside &= (x.col(i) - shift - centre_.col(i)).squaredNorm() <= squared_margin_[i];
     }
     return !inside;
   }
 
-  /// Lists the pairs near the current places. `dt` [s] is the time step, `step` counts steps.
+  /// Lists the pairs near the current places, at time t [s] and step `step` of length dt [s].
   template <Needs needs, Neighbourhood<Dim> N>
   void refresh(const Grains<Dim, needs>& g, const std::vector<Wall<Dim>>& all_walls,
-               N& neighbourhood, double dt, std::int64_t step) {
+               N& neighbourhood, double t, double dt, std::int64_t step) {
     adapt(step);
     const int n = g.size();
+    time_ = t;
+    drift_ = common_drift<Dim>(n, [&](int i) { return g.velocity.col(i); });
     margin_.resize(n);
     for (int i = 0; i < n; ++i) {
-      margin_[i] = std::clamp(kHorizon * dt * g.velocity.col(i).norm(), floor_ * g.radius[i],
-                              kCeiling * g.radius[i]);
+      margin_[i] = std::clamp(kHorizon * dt * (g.velocity.col(i) - drift_).norm(),
+                              floor_ * g.radius[i], kCeiling * g.radius[i]);
     }
     neighbourhood.near_pairs(g.position, g.radius, margin_, fresh_);
     grains.replace(fresh_);
@@ -100,10 +106,16 @@ class NearList {
     for (std::size_t w = 0; w < all_walls.size(); ++w) {
       const Wall<Dim>& wall = all_walls[w];
       wall_centre_[w] = wall.point;
-      wall_margin_[w] = wall.moves() ? std::max(slack, kHorizon * dt * wall.velocity.norm()) : 0;
+      // A fixed wall moves against the drift; without a drift it needs no margin.
+      const bool still = !wall.moves() && drift_.isZero(0);
+      wall_margin_[w] =
+          still ? 0 : std::max(slack, kHorizon * dt * (wall.velocity - drift_).norm());
       const double reach = wall_margin_[w];
-      wall.for_each_within(g.position, [&](int i) { return g.radius[i] + margin_[i] + reach; },
-                           [&](int i) { fresh_walls_.push_back({static_cast<int>(w), i}); });
+      wall.for_each_within(
+          g.position, [&](int i) { return g.radius[i] + margin_[i] + reach; },
+          [&](int i) {
+            fresh_walls_.push_back({static_cast<int>(w), i});
+          });
     }
     walls.replace(fresh_walls_);
 
@@ -130,6 +142,8 @@ class NearList {
     last_refresh_ = step;
   }
 
+  double time_ = 0;                    // of the last refresh [s]
+  Vec<Dim> drift_ = Vec<Dim>::Zero();  // velocity of the frame [m/s]
   Columns<Dim> centre_;
   Eigen::VectorXd margin_;
   Eigen::VectorXd squared_margin_;

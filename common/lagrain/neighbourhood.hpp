@@ -4,8 +4,12 @@
 
 #include <lagrain/vec.hpp>
 
+#include <algorithm>
+#include <array>
 #include <compare>
 #include <concepts>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace lagrain {
@@ -26,9 +30,31 @@ bool within_reach(const Columns<Dim>& x, const Eigen::VectorXd& radius,
   return (x.col(i) - x.col(j)).squaredNorm() <= reach * reach;
 }
 
+/// The movement that most grains share: the median of each component over a sample of the columns
+/// of f(i), i in [0, n). Neighbourhoods measure displacements against it, because a common drift
+/// (free fall, a shaken box) moves no grain against another. A few fast grains do not change a
+/// median.
+template <int Dim, class F>
+Vec<Dim> common_drift(int n, F&& f) {
+  constexpr int kSample = 101;
+  const int count = std::min(n, kSample);
+  Vec<Dim> drift = Vec<Dim>::Zero();
+  std::array<double, kSample> values;
+  for (int d = 0; d < Dim && count > 0; ++d) {
+    for (int k = 0; k < count; ++k) {
+      const auto i = static_cast<int>(static_cast<std::int64_t>(k) * n / count);
+      values[static_cast<std::size_t>(k)] = f(i)[d];
+    }
+    std::nth_element(values.begin(), values.begin() + count / 2, values.begin() + count);
+    drift[d] = values[static_cast<std::size_t>(count / 2)];
+  }
+  return drift;
+}
+
 /// Proposes pairs. `near_pairs` lists, in increasing order, exactly the pairs within reach at
 /// centres x [m], for margins [m] that it may shrink (never enlarge) where it cannot promise more.
-/// As long as no grain moves further than its margin from there, no other pair can touch.
+/// As long as no grain moves further than its margin from there, a drift common to all apart, no
+/// other pair can touch.
 template <class N, int Dim>
 concept Neighbourhood = requires(N n, const Columns<Dim>& x, const Eigen::VectorXd& radius,
                                  Eigen::VectorXd& margin, std::vector<Pair>& pairs) {

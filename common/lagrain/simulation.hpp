@@ -72,7 +72,7 @@ class Simulation {
                     message.str());
     if (Motion::kConservativeOnly) check_conservative();
     for (Wall<Dim>& wall : walls_) wall.advance(0, 0);
-    evaluate_forces();  // with force_step_ = 0: memories and energies do not advance
+    evaluate_forces(0);  // with force_step_ = 0: memories and energies do not advance
     force_step_ = Motion::kConservativeOnly ? 0 : setting_.time_step;
     flow_ = {};
   }
@@ -83,7 +83,7 @@ class Simulation {
     const double start = time();
     auto forces = [&](double t) {
       for (Wall<Dim>& wall : walls_) wall.advance(start + t, t);
-      evaluate_forces();
+      evaluate_forces(start + t);
     };
     motion_.step(grains_, setting_.time_step, forces);
     ++steps_;
@@ -134,11 +134,11 @@ class Simulation {
  private:
   using Clock = std::chrono::steady_clock;
 
-  void evaluate_forces() {
+  void evaluate_forces(double t) {
     const auto start = Clock::now();
-    if (near_.expired(grains_.position, walls_)) {
+    if (near_.expired(grains_.position, walls_, t)) {
       check_finite();
-      near_.refresh(grains_, walls_, neighbourhood_, setting_.time_step, steps_);
+      near_.refresh(grains_, walls_, neighbourhood_, t, setting_.time_step, steps_);
     }
     neighbourhood_time_ += Clock::now() - start;
     for (Eigen::Index i = 0; i < grains_.force.cols(); ++i) {

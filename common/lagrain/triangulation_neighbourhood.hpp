@@ -57,6 +57,7 @@ class TriangulationNeighbourhood {
   explicit TriangulationNeighbourhood(Laziness laziness) : laziness_(laziness) {}
 
   static const char* name() { return "regular triangulation"; }
+  /// Regular for the inflated reference discs, in a frame that drifts with the grains.
   const T& triangulation() const { return t_; }
   const TriangulationCost& cost() const { return cost_; }
   const Laziness& laziness() const { return laziness_; }
@@ -67,18 +68,21 @@ class TriangulationNeighbourhood {
     if (reference_.cols() != x.cols()) {
       build(x, radius);
     } else if (laziness_.follow) {
+      // T does not change when everything moves together: displacements count against the drift.
+      drift_ = common_drift<Dim>(size(), [&](int i) { return x.col(i) - reference_.col(i); });
       for (int i = 0; i < size(); ++i) {
         margin[i] = std::min(margin[i], 0.5 * skin_[i]);
         if (strayed(x, i, margin[i])) moved_.push_back(i);
       }
-      if (!moved_.empty()) bring_up_to_date(x, radius);
+      if (!moved_.empty()) {
+        ++cost_.updates;
+        move_references(x, radius);
+        certify(x, radius);
+      }
     }
     for (int i = 0; i < size(); ++i) margin[i] = std::min(margin[i], 0.5 * skin_[i]);
 
-    pairs.clear();
-    for (const Pair& edge : edges_) {
-      if (within_reach<Dim>(x, radius, margin, edge.i, edge.j)) pairs.push_back(edge);
-    }
+    collect_near_edges(x, radius, margin, pairs);
     if (!uncertain_.empty()) search_around_uncertain(x, radius, margin, pairs);
   }
 
@@ -96,7 +100,6 @@ class TriangulationNeighbourhood {
     t_.build(reference_, weight_);
     moved_.clear();
     certify(x, radius);
-    collect_edges();
   }
 
   void everybody() {
@@ -108,7 +111,7 @@ class TriangulationNeighbourhood {
   /// moved by its margin.
   bool strayed(const Columns<Dim>& x, int i, double margin) const {
     const double room = (skin_[i] - margin) * (1 - 1e-6);
-    return !((x.col(i) - reference_.col(i)).squaredNorm() <= room * room);
+    return !((x.col(i) - drift_ - reference_.col(i)).squaredNorm() <= room * room);
   }
 
   /// New skins for the grains in moved_, from their neighbours in T as it stands.
@@ -122,17 +125,10 @@ class TriangulationNeighbourhood {
     }
   }
 
-  /// Moves the references in moved_ to x, repairs and certifies T, and empties moved_.
-  void bring_up_to_date(const Columns<Dim>& x, const Eigen::VectorXd& radius) {
-    ++cost_.updates;
-    move_references(x, radius);
-    certify(x, radius);
-    collect_edges();
-  }
-
+  /// Brings the references in moved_ up to date, repairs T, and empties moved_.
   void move_references(const Columns<Dim>& x, const Eigen::VectorXd& radius) {
     choose_skins(radius);
-    for (const int i : moved_) reference_.col(i) = x.col(i);
+    for (const int i : moved_) reference_.col(i) = x.col(i) - drift_;
     cost_.moved += static_cast<std::int64_t>(moved_.size());
     cost_.ladder += t_.move(moved_, reference_, weight_);
     moved_.clear();
@@ -173,24 +169,27 @@ class TriangulationNeighbourhood {
     list.erase(std::unique(list.begin(), list.end()), list.end());
   }
 
-  /// The edges of T in increasing order: a counting sort by the first end, then short sorts.
-  void collect_edges() {
+  /// The edges of T within reach, in increasing order: a counting sort by the first end, then short
+  /// sorts.
+  void collect_near_edges(const Columns<Dim>& x, const Eigen::VectorXd& radius,
+                          const Eigen::VectorXd& margin, std::vector<Pair>& pairs) {
     unsorted_.clear();
-    start_.assign(static_cast<std::size_t>(size()) + 1, 0);
+    row_end_.assign(static_cast<std::size_t>(size()) + 1, 0);
     t_.for_each_edge([&](int a, int b) {
+      if (!within_reach<Dim>(x, radius, margin, a, b)) return;
       unsorted_.push_back({a, b});
-      ++start_[static_cast<std::size_t>(a) + 1];
+      ++row_end_[static_cast<std::size_t>(a) + 1];
     });
-    for (std::size_t i = 1; i < start_.size(); ++i) start_[i] += start_[i - 1];
-    edges_.resize(unsorted_.size());
-    for (const Pair& edge : unsorted_) {
-      edges_[static_cast<std::size_t>(start_[static_cast<std::size_t>(edge.i)]++)] = edge;
+    for (std::size_t i = 1; i < row_end_.size(); ++i) row_end_[i] += row_end_[i - 1];
+    pairs.resize(unsorted_.size());
+    // row_end_[i] starts as the beginning of row i and becomes its end.
+    for (const Pair& pair : unsorted_) {
+      pairs[static_cast<std::size_t>(row_end_[static_cast<std::size_t>(pair.i)]++)] = pair;
     }
-    // start_[i] has become the end of row i.
     std::ptrdiff_t begin = 0;
     for (int i = 0; i < size(); ++i) {
-      const std::ptrdiff_t end = start_[static_cast<std::size_t>(i)];
-      std::sort(edges_.begin() + begin, edges_.begin() + end);
+      const std::ptrdiff_t end = row_end_[static_cast<std::size_t>(i)];
+      std::sort(pairs.begin() + begin, pairs.begin() + end);
       begin = end;
     }
   }
@@ -218,14 +217,15 @@ class TriangulationNeighbourhood {
   Columns<Dim> reference_;
   Eigen::VectorXd weight_;  ///< (r + skin)^2
   Eigen::VectorXd skin_;
-  std::vector<Pair> edges_;     ///< of T, sorted
-  std::vector<int> uncertain_;  ///< grains whose pairs T may lack
+  Vec<Dim> drift_ = Vec<Dim>::Zero();  ///< of the grains against the references' frame [m]
+  std::vector<Pair> edges_;            ///< of T, sorted
+  std::vector<int> uncertain_;         ///< grains whose pairs T may lack
   TriangulationCost cost_;
 
   std::vector<int> moved_;
   std::vector<int> failed_;
   std::vector<Pair> unsorted_;
-  std::vector<std::ptrdiff_t> start_;
+  std::vector<std::ptrdiff_t> row_end_;
 };
 
 }  // namespace lagrain

@@ -21,7 +21,7 @@ struct HalfSpace {
 
 /// A straight wall from the wall's point to its other end, solid from both sides.
 template <int Dim>
-struct Segment {
+struct WallSegment {
   Vec<Dim> along;  ///< from the wall's point to the other end [m]
 };
 
@@ -57,7 +57,7 @@ template <int Dim>
 struct Wall {
   std::string name;
   Vec<Dim> point = Vec<Dim>::Zero();  ///< where it is now: on the plane, or the segment's end [m]
-  std::variant<HalfSpace<Dim>, Segment<Dim>> shape;
+  std::variant<HalfSpace<Dim>, WallSegment<Dim>> shape;
   std::variant<Fixed, Steady<Dim>, Shake<Dim>, Piston<Dim>> motion = Fixed{};
   int kind = 0;                          ///< row of the table of laws
   Vec<Dim> home = Vec<Dim>::Zero();      ///< where it was at time 0 [m], for motions given in time
@@ -68,7 +68,7 @@ struct Wall {
     return {std::move(name), point, HalfSpace<Dim>{normal.normalized()}, Fixed{}, 0, point};
   }
   static Wall segment(std::string name, const Vec<Dim>& from, const Vec<Dim>& to) {
-    return {std::move(name), from, Segment<Dim>{to - from}, Fixed{}, 0, from};
+    return {std::move(name), from, WallSegment<Dim>{to - from}, Fixed{}, 0, from};
   }
 
   bool moves() const { return !std::holds_alternative<Fixed>(motion); }
@@ -82,7 +82,7 @@ struct Wall {
     if (const auto* plane = std::get_if<HalfSpace<Dim>>(&shape)) {
       return {(x - point).dot(plane->normal), plane->normal};
     }
-    const Vec<Dim>& along = std::get<Segment<Dim>>(shape).along;
+    const Vec<Dim>& along = std::get<WallSegment<Dim>>(shape).along;
     const double t = std::clamp((x - point).dot(along) / along.squaredNorm(), 0.0, 1.0);
     const Vec<Dim> away = x - (point + t * along);
     const double distance = away.norm();

@@ -54,5 +54,7 @@ TEST_SUITE("neighbourhood") {
                                                           cases(10000, 100000));
     check_trajectory<Dim, typename C::Law, CellGrid<Dim>>(stirring<Dim>(count, 2),
                                                           cases(3000, 100000));
+    check_trajectory<Dim, typename C::Law, CellGrid<Dim>>(drifting<Dim>(count, 3),
+                                                          cases(3000, 100000));
   }
 }

@@ -176,9 +176,10 @@ TEST_SUITE("observe") {
     const double coarse = ledger_error<C::Dim, typename C::Law>(scene, 1);
     const double fine = ledger_error<C::Dim, typename C::Law>(scene, 8);
 
-    // Losses are summed by rectangles with a jump at each first touch: first order.
+    // Losses are summed by rectangles with the same late first force that the grains feel: better
+    // than first order; 1.6 to 1.9 was measured.
     CHECK(coarse < 0.05);
-    CHECK(observed_order(coarse, fine, 8) > 0.8);
+    CHECK(observed_order(coarse, fine, 8) > 1.3);
   }
 
   TEST_CASE_TEMPLATE("so does the ledger of a shaken box, the walls' work included", C,
@@ -189,7 +190,7 @@ TEST_SUITE("observe") {
     const double fine = ledger_error<C::Dim, typename C::Law>(scene, 8);
 
     CHECK(coarse < 0.05);
-    CHECK(observed_order(coarse, fine, 8) > 0.8);
+    CHECK(observed_order(coarse, fine, 8) > 1.3);
   }
 
   TEST_CASE("Hertz with a tangential spring leaves a residual of the law itself, a few percent") {

@@ -17,7 +17,8 @@ using Triangulated = TriangulationNeighbourhood<2>;
 static_assert(Neighbourhood<Triangulated, 2>);
 
 std::vector<MotionScene<2>> normal_scenes(std::uint64_t seed) {
-  return {settling_bed<2>(100, seed), stirring<2>(100, seed), size_mix<2>(100, 30, seed)};
+  return {settling_bed<2>(100, seed), stirring<2>(100, seed), size_mix<2>(100, 30, seed),
+          drifting<2>(100, seed)};
 }
 
 }  // namespace
@@ -36,7 +37,7 @@ TEST_SUITE("triangulation_neighbourhood") {
   TEST_CASE_TEMPLATE("all three neighbourhoods move grains alike, bit for bit", Law,
                      FrictionalSpring, LinearSpring, FrictionalHertz) {
     for (const auto& scene : {settling_bed<2>(36, 1), stirring<2>(36, 2), size_mix<2>(36, 30, 3),
-                              size_mix<2>(36, 1000, 4), bullet<2>(36, 5)}) {
+                              size_mix<2>(36, 1000, 4), bullet<2>(36, 5), drifting<2>(36, 6)}) {
       check_trajectory<2, Law, Triangulated>(scene, cases(10000, 100000));
       check_trajectory<2, Law, CellGrid<2>>(scene, cases(2000, 100000));
     }

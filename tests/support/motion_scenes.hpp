@@ -128,6 +128,20 @@ MotionScene<Dim> stirring(int count, std::uint64_t seed) {
   return {"stirring", packed.grains, box<Dim>(packed.low, packed.high)};
 }
 
+/// A cloud that stirs a little and drifts fast as a whole, past a fixed wall and off a moving one.
+template <int Dim>
+MotionScene<Dim> drifting(int count, std::uint64_t seed) {
+  Random random(seed);
+  const auto packed = lattice<Dim>({.count = count, .speed = 3, .spin = 5}, random);
+  MotionScene<Dim> scene{"drifting cloud", packed.grains, {}};
+  const Vec<Dim> drift = 200 * along<Dim>();
+  for (auto& g : scene.grains) g.velocity += drift;
+  scene.walls.push_back(Wall<Dim>::half_space("ground", packed.low, up<Dim>()));
+  scene.walls.push_back(Wall<Dim>::half_space("ram", packed.low, along<Dim>()));
+  scene.walls.back().motion = Steady<Dim>{drift};
+  return scene;
+}
+
 /// Sizes from 1 to `ratio`, scattered without overlap, the small ones everywhere between.
 template <int Dim>
 MotionScene<Dim> size_mix(int count, double ratio, std::uint64_t seed) {

@@ -1,0 +1,69 @@
+#pragma once
+/// @file
+/// A neighbourhood chosen at run time.
+
+#include <lagrain/neighbourhood.hpp>
+#include <lagrain/triangulation_neighbourhood.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace lagrain {
+
+/// Holds any neighbourhood behind one pointer. It is asked once per refresh of the near list, so
+/// that the virtual call costs nothing and models need not be compiled once per neighbourhood.
+template <int Dim>
+class AnyNeighbourhood {
+ public:
+  template <Neighbourhood<Dim> N>
+  explicit AnyNeighbourhood(N neighbourhood)
+      : held_(std::make_unique<Held<N>>(std::move(neighbourhood))) {}
+
+  const char* name() const { return held_->name(); }
+  void near_pairs(const Columns<Dim>& x, const Eigen::VectorXd& radius, Eigen::VectorXd& margin,
+                  std::vector<Pair>& pairs) {
+    held_->near_pairs(x, radius, margin, pairs);
+  }
+  /// What the triangulation cost; null for other neighbourhoods.
+  const TriangulationCost* cost() const { return held_->cost(); }
+  /// Edges of the triangulation; 0 for other neighbourhoods.
+  std::int64_t edges() const { return held_->edges(); }
+
+ private:
+  struct Interface {
+    virtual ~Interface() = default;
+    virtual const char* name() const = 0;
+    virtual void near_pairs(const Columns<Dim>&, const Eigen::VectorXd&, Eigen::VectorXd&,
+                            std::vector<Pair>&) = 0;
+    virtual const TriangulationCost* cost() const = 0;
+    virtual std::int64_t edges() const = 0;
+  };
+
+  template <class N>
+  struct Held final : Interface {
+    explicit Held(N n) : neighbourhood(std::move(n)) {}
+    const char* name() const override { return neighbourhood.name(); }
+    void near_pairs(const Columns<Dim>& x, const Eigen::VectorXd& radius, Eigen::VectorXd& margin,
+                    std::vector<Pair>& pairs) override {
+      neighbourhood.near_pairs(x, radius, margin, pairs);
+    }
+    const TriangulationCost* cost() const override {
+      if constexpr (requires { neighbourhood.cost(); }) return &neighbourhood.cost();
+      return nullptr;
+    }
+    std::int64_t edges() const override {
+      std::int64_t count = 0;
+      if constexpr (requires { neighbourhood.triangulation(); }) {
+        neighbourhood.triangulation().for_each_edge([&](int, int) { ++count; });
+      }
+      return count;
+    }
+    N neighbourhood;
+  };
+
+  std::unique_ptr<Interface> held_;
+};
+
+}  // namespace lagrain

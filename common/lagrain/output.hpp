@@ -1,0 +1,66 @@
+#pragma once
+/// @file
+/// The folder that a run leaves behind.
+///
+///     scene.toml       the scene with every default filled in; reads back to the same run
+///     series.csv       energies, contacts, overlaps and wall forces against time
+///     frames.csv       number, step and time of each frame
+///     frames/NNNN.csv  the grains; contacts/NNNN.csv beside it if the scene asks for contacts
+///     summary.txt      what the run was and how far it can be trusted
+///     last.csv         only after an error: the last good state
+///
+/// The first line of a CSV file is name[unit]. Numbers read back bit for bit. Every file is written
+/// whole or not at all.
+
+#include <lagrain/run.hpp>
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace lagrain {
+
+/// "0.1.0"
+const char* version();
+
+/// Writes a file whole or not at all, through a neighbour that is renamed.
+/// @throws SceneError if that is not possible
+void write_file(const std::filesystem::path& file, std::string_view text);
+
+/// Makes a folder, with its parents, and sees that files can be written into it.
+/// @throws SceneError if not
+void make_folder(const std::filesystem::path& folder);
+
+/// The grains as CSV: id, place, velocity, spin if any, radius, material.
+template <int Dim>
+std::string frame_csv(const Run<Dim>& run);
+
+/// The contacts as CSV: the two partners, overlap, normal, force on the first. A wall is given by
+/// its name.
+template <int Dim>
+std::string contacts_csv(const Run<Dim>& run);
+
+/// Where a run is, for a progress line.
+struct Progress {
+  double fraction = 0;  ///< of the steps [-]
+  double time = 0;      ///< simulated [s]
+  std::int64_t contacts = 0;
+  double seconds_left = 0;  ///< of wall clock, guessed [s]
+};
+
+struct RecordOptions {
+  std::filesystem::path folder;
+  std::function<bool()> stop;                     ///< asked after every step
+  std::function<void(const Progress&)> progress;  ///< told a few times a second
+};
+
+/// Runs to the scene's duration and writes the folder. Frames of an earlier run are removed from
+/// it, nothing else.
+/// @return false if `stop` ended it; what was computed until then is written
+/// @throws SceneError if the folder cannot be written: before the first step if possible
+/// @throws SimulationError as Run::step, after writing what was computed and last.csv
+template <int Dim>
+bool record(Run<Dim>& run, const RecordOptions& options);
+
+}  // namespace lagrain

@@ -1,0 +1,32 @@
+#pragma once
+/// @file
+/// From a scene to its grains: who is where at time 0.
+
+#include <lagrain/grains.hpp>
+#include <lagrain/scene.hpp>
+
+#include <vector>
+
+namespace lagrain {
+
+/// The grains of a scene at time 0: those placed by hand first, then the fills in order.
+template <int Dim>
+struct Placement {
+  std::vector<Grain<Dim>> grains;
+  std::vector<int> material;  ///< N: index into the scene's materials
+  std::vector<int> group;     ///< N: index into the scene's fills; -1 for a grain placed by hand
+};
+
+/// Places the grains and checks them.
+///
+/// A lattice fills its region row by row from the bottom (the last axis points up), in cells of the
+/// group's largest diameter and a little room for a seeded jitter; cells that a wall or an earlier
+/// grain already takes are passed over. A random arrangement tries places until one is free, large
+/// grains first. Neither makes overlaps.
+///
+/// @throws SceneError if a region does not hold its grains (the message says how many it held), or
+/// if grains placed by hand overlap each other or a wall by more than the scene allows
+template <int Dim>
+Placement<Dim> place_grains(const Scene<Dim>& scene);
+
+}  // namespace lagrain

@@ -1,0 +1,133 @@
+#pragma once
+/// @file
+/// A simulation whose model was chosen at run time, by a scene.
+
+#include <lagrain/any_neighbourhood.hpp>
+#include <lagrain/audit.hpp>
+#include <lagrain/observe.hpp>
+#include <lagrain/placement.hpp>
+#include <lagrain/scene.hpp>
+#include <lagrain/time_step.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lagrain {
+
+/// One contact, for output and pictures.
+template <int Dim>
+struct ContactRecord {
+  int i = 0;                           ///< grain
+  int j = -1;                          ///< grain, or -1 for a wall
+  int wall = -1;                       ///< wall, or -1 for a grain
+  double overlap = 0;                  ///< [m]
+  Vec<Dim> normal = Vec<Dim>::Zero();  ///< from the partner to i [-]
+  Vec<Dim> force = Vec<Dim>::Zero();   ///< on i [N]
+};
+
+/// What a model stores.
+struct ModelSize {
+  std::size_t per_grain = 0;        ///< bytes of state of a grain
+  std::size_t per_near_pair = 0;    ///< bytes of a pair in the near list, memory included
+  std::size_t spin_per_grain = 0;   ///< of the first: spin, torque, inertia
+  std::size_t memory_per_pair = 0;  ///< of the second: memory
+};
+
+/// A simulation behind a plain interface: one virtual call per step, none within. The types
+/// behind it are those that the scene names; make_run chooses them.
+template <int Dim>
+class Run {
+ public:
+  virtual ~Run() = default;
+  Run(const Run&) = delete;
+  Run& operator=(const Run&) = delete;
+
+  /// One time step, then the audit if the scene asks for it.
+  /// @throws SimulationError if the physics went wrong
+  void step();
+  /// Steps until `time() >= t`, to half a time step.
+  /// @throws SimulationError
+  void advance_to(double t);
+
+  std::int64_t steps_planned() const { return steps_planned_; }  ///< the scene's duration in steps
+  bool finished() const { return steps() >= steps_planned_; }
+
+  virtual std::int64_t steps() const = 0;
+  virtual double time() const = 0;  ///< [s]
+  virtual TimeScales time_scales() const = 0;
+  virtual const Columns<Dim>& positions() const = 0;   ///< Dim x N [m]
+  virtual const Columns<Dim>& velocities() const = 0;  ///< Dim x N [m/s]
+  /// N columns [rad/s]; null where nothing spins.
+  virtual const Columns<kSpinDim<Dim>>* spins() const = 0;
+  virtual const Eigen::VectorXd& radii() const = 0;   ///< N [m]
+  virtual const Eigen::VectorXd& masses() const = 0;  ///< N [kg]
+  virtual const std::vector<Wall<Dim>>& walls() const = 0;
+  virtual std::vector<ContactRecord<Dim>> contacts() const = 0;  ///< grains first, in order
+  virtual ContactStatistics statistics() const = 0;
+  virtual Ledger ledger() const = 0;
+  virtual const std::vector<Pair>& near_pairs() const = 0;
+  virtual std::int64_t refreshes() const = 0;  ///< of the near list
+  virtual const AnyNeighbourhood<Dim>& neighbourhood() const = 0;
+  /// Wall-clock time spent on knowing the near pairs [s].
+  virtual double neighbourhood_seconds() const = 0;
+  virtual ModelSize size() const = 0;
+
+  int count() const { return static_cast<int>(radii().size()); }
+  /// As it runs: the time step is in seconds.
+  const Scene<Dim>& scene() const { return scene_; }
+  double time_step() const { return scene_.time_step.seconds; }          ///< [s]
+  const std::vector<int>& materials() const { return materials_; }       ///< N, see Placement
+  const std::vector<int>& groups() const { return groups_; }             ///< N, see Placement
+  const Ledger& start() const { return start_; }                         ///< the ledger at time 0
+  double energy_residual() const { return residual(ledger(), start_); }  ///< [J]
+  const ContactAudit<Dim>& audit() const { return audit_; }
+
+ protected:
+  Run(Scene<Dim> scene, std::vector<int> materials, std::vector<int> groups);
+  /// To be called at the end of the constructor.
+  void started();
+
+ private:
+  virtual void advance() = 0;
+  /// Whether the near list holds for the places as they are; between the stages of a step it may
+  /// just have expired.
+  virtual bool near_is_valid() const = 0;
+  void check_contacts();
+
+  Scene<Dim> scene_;
+  std::vector<int> materials_;
+  std::vector<int> groups_;
+  std::int64_t steps_planned_ = 0;
+  Ledger start_;
+  ContactAudit<Dim> audit_;
+  std::int64_t refreshes_seen_ = 0;
+};
+
+/// Builds the simulation that a scene names: places the grains, chooses the types once, evaluates
+/// the forces at time 0.
+/// @throws SceneError if the grains do not fit or overlap, or the time step is not safe
+template <int Dim>
+std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, AnyNeighbourhood<Dim> neighbourhood);
+
+/// The same with a neighbourhood that needs no triangulation.
+/// @throws ContractError if the scene names the triangulation
+template <int Dim>
+std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene);
+
+/// What a run is made of and what it will cost, as text.
+template <int Dim>
+std::string explain(const Run<Dim>& run);
+
+/// Name and value of what a careful person states beside a result: grains, steps, overlaps,
+/// residuals, audit, cost of the neighbourhood.
+template <int Dim>
+std::vector<std::pair<std::string, std::string>> facts(const Run<Dim>& run);
+
+/// Three significant digits for people: "1.23e-05", "0.0123", "12.3".
+std::string rounded(double value, int digits = 3);
+
+}  // namespace lagrain

@@ -1,0 +1,172 @@
+#pragma once
+/// @file
+/// A scene: what a TOML file says, as plain numbers in SI. The physics lives in types; make_run
+/// (run.hpp) turns the names into them.
+
+#include <lagrain/check.hpp>
+#include <lagrain/vec.hpp>
+#include <lagrain/walls.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace lagrain {
+
+enum class NormalModel { linear, hertz };
+enum class FrictionModel { none, viscous, elastic };
+enum class IntegratorModel { velocity_verlet, symplectic_euler, fourth_order };
+enum class NeighbourhoodModel { triangulation, linked_cells, all_pairs };
+
+/// The words of the scene file.
+std::string_view name_of(NormalModel model);
+std::string_view name_of(FrictionModel model);
+std::string_view name_of(IntegratorModel model);
+std::string_view name_of(NeighbourhoodModel model);
+
+/// Numbers of a contact law; a model uses some of them.
+struct LawNumbers {
+  double stiffness = 0;              ///< linear: k [N/m]
+  double modulus = 0;                ///< hertz: E* [Pa]
+  double impact_speed = 0;           ///< hertz: the fastest collision expected [m/s]
+  double restitution = 1;            ///< [-]
+  double friction = 0;               ///< viscous, elastic: mu [-]
+  double stiffness_ratio = 2.0 / 7;  ///< elastic: tangential over normal stiffness [-]
+  double tangential_damping = 0;     ///< viscous, elastic: damping ratio [-]
+};
+
+/// Numbers that hold between two materials instead of the scene's own.
+struct PairLaw {
+  int a = 0;  ///< material
+  int b = 0;  ///< material
+  LawNumbers law;
+};
+
+struct Material {
+  std::string name;
+  double density = 0;  ///< [kg/m^3]; 0 if only walls are made of it
+};
+
+/// Radii uniform between two bounds [m].
+struct UniformRadius {
+  double low = 0;
+  double high = 0;
+};
+
+/// Radii [m] picked from a list; weights are relative numbers of grains.
+struct ListedRadius {
+  std::vector<double> values;
+  std::vector<double> weights;
+};
+
+using RadiusLaw = std::variant<double, UniformRadius, ListedRadius>;
+
+enum class Arrangement { lattice, random };
+
+/// A group of grains that fills an axis-parallel region.
+template <int Dim>
+struct Fill {
+  std::string name;
+  int material = 0;
+  std::optional<int> count;  ///< none: as many as the lattice holds
+  RadiusLaw radius;
+  Vec<Dim> low = Vec<Dim>::Zero();   ///< [m]
+  Vec<Dim> high = Vec<Dim>::Zero();  ///< [m]
+  Arrangement arrangement = Arrangement::lattice;
+  Vec<Dim> velocity = Vec<Dim>::Zero();  ///< [m/s]
+  double random_speed = 0;               ///< added, in a random direction [m/s]
+};
+
+/// A grain placed by hand.
+template <int Dim>
+struct PlacedGrain {
+  Vec<Dim> position = Vec<Dim>::Zero();      ///< [m]
+  double radius = 0;                         ///< [m]
+  Vec<Dim> velocity = Vec<Dim>::Zero();      ///< [m/s]
+  SpinVec<Dim> spin = SpinVec<Dim>::Zero();  ///< [rad/s]
+  int material = 0;
+  bool pinned = false;
+};
+
+/// A time step [s], or a fraction of the shortest contact time.
+struct TimeStep {
+  double fraction_of_contact = 1.0 / 25;  ///< used if `seconds` is 0
+  double seconds = 0;
+};
+
+struct OutputPlan {
+  double frames_every = 0;  ///< [s]; 0: first and last frame only
+  double series_every = 0;  ///< [s]; 0: a thousandth of the duration
+  bool contacts = false;    ///< contacts beside each frame
+};
+
+/// Everything that a run needs to know. Same scene, same bits.
+template <int Dim>
+struct Scene {
+  std::string file;                  ///< where it was read; empty if built by a program
+  std::map<std::string, int> lines;  ///< key -> line in that file, for messages
+
+  std::string title;
+  std::uint64_t seed = 1;
+  double duration = 0;  ///< [s]
+  TimeStep time_step;
+  Vec<Dim> gravity = Vec<Dim>::Zero();  ///< [m/s^2]
+  double depth = 1;                     ///< of a disc [m]; spheres ignore it
+  NormalModel normal = NormalModel::linear;
+  FrictionModel friction = FrictionModel::none;
+  IntegratorModel integrator = IntegratorModel::velocity_verlet;
+  NeighbourhoodModel neighbourhood = NeighbourhoodModel::triangulation;
+  double largest_overlap = 0.3;           ///< of the smaller radius: beyond it the run stops [-]
+  double largest_initial_overlap = 0.01;  ///< of the smaller radius [-]
+  bool audit = false;
+  int audit_every = 100;  ///< steps, above 1,000 grains
+
+  LawNumbers law;
+  std::vector<PairLaw> pairs;
+  std::vector<Material> materials;
+  std::vector<Fill<Dim>> fills;
+  std::vector<PlacedGrain<Dim>> grains;
+  std::vector<Wall<Dim>> walls;  ///< `kind` is the material
+  OutputPlan output;
+
+  /// "file:line: key: message", with what is known of it.
+  SceneError error(const std::string& key, const std::string& message) const {
+    std::string text;
+    if (!file.empty()) {
+      text = file + ":";
+      if (const auto line = lines.find(key); line != lines.end()) {
+        text += std::to_string(line->second) + ":";
+      }
+      text += " ";
+    }
+    return SceneError(text + key + ": " + message);
+  }
+};
+
+/// The dimension that a scene file names.
+/// @throws SceneError if the file cannot be read, is not TOML, or names none
+int scene_dimension(const std::filesystem::path& file);
+
+/// Reads a scene file; every number is checked, the grains are not placed yet.
+/// @throws SceneError: one sentence with file, line, key, what was expected and what was found
+template <int Dim>
+Scene<Dim> read_scene(const std::filesystem::path& file);
+
+/// The same from text; `name` stands for the file in messages.
+template <int Dim>
+Scene<Dim> parse_scene(std::string_view text, const std::string& name);
+
+/// The scene as TOML with every default filled in. Reading it back gives the same numbers, bit for
+/// bit.
+template <int Dim>
+std::string to_toml(const Scene<Dim>& scene);
+
+/// The shortest decimal that reads back as the same double.
+std::string shortest(double value);
+
+}  // namespace lagrain

@@ -1,0 +1,279 @@
+#include <lagrain/placement.hpp>
+
+#include <lagrain/random.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numeric>
+#include <unordered_map>
+
+namespace lagrain {
+namespace {
+
+/// Spacing of a lattice in largest diameters: the surplus is the room for jitter.
+constexpr double kSpacing = 1.02;
+/// Places tried for one grain before its region counts as full.
+constexpr int kTries = 2000;
+
+/// Finds the grains near a place. Each grain is listed in every cell that its bounding box meets,
+/// so that any mixture of sizes works.
+template <int Dim>
+class Occupied {
+ public:
+  explicit Occupied(double cell) : cell_(cell) {}
+
+  void add(int grain, const Vec<Dim>& x, double r) {
+    visit_cells(x, r, [&](std::uint64_t key) {
+      cells_[key].push_back(grain);
+      return true;
+    });
+  }
+  /// Visits grains near the ball, some more than once, until f returns false.
+  template <class F>
+  void for_each_near(const Vec<Dim>& x, double r, F&& f) const {
+    visit_cells(x, r, [&](std::uint64_t key) {
+      const auto found = cells_.find(key);
+      if (found == cells_.end()) return true;
+      return std::all_of(found->second.begin(), found->second.end(), f);
+    });
+  }
+
+ private:
+  template <class F>
+  void visit_cells(const Vec<Dim>& x, double r, F&& f) const {
+    std::array<std::int64_t, Dim> low;
+    std::array<std::int64_t, Dim> at;
+    std::array<std::int64_t, Dim> high;
+    for (std::size_t d = 0; d < Dim; ++d) {
+      const auto k = static_cast<Eigen::Index>(d);
+      low[d] = static_cast<std::int64_t>(std::floor((x[k] - r) / cell_));
+      high[d] = static_cast<std::int64_t>(std::floor((x[k] + r) / cell_));
+    }
+    at = low;
+    for (bool more = true; more;) {
+      std::uint64_t key = 0;
+      for (std::size_t d = 0; d < Dim; ++d) {
+        key = key * 0x9E3779B97F4A7C15ULL + static_cast<std::uint64_t>(at[d]);
+      }
+      if (!f(key)) return;
+      more = false;
+      for (std::size_t d = 0; d < Dim && !more; ++d) {
+        more = at[d] < high[d];
+        at[d] = more ? at[d] + 1 : low[d];
+      }
+    }
+  }
+
+  double cell_;
+  std::unordered_map<std::uint64_t, std::vector<int>>
+      cells_;  // a key shared by accident only costs
+};
+
+template <int Dim>
+class Placer {
+ public:
+  explicit Placer(const Scene<Dim>& scene) : scene_(scene), occupied_(cell_size(scene)) {}
+
+  Placement<Dim> place() {
+    for (std::size_t g = 0; g < scene_.grains.size(); ++g) place_by_hand(g);
+    for (std::size_t f = 0; f < scene_.fills.size(); ++f) fill(f);
+    return std::move(placed_);
+  }
+
+ private:
+  static double largest(const RadiusLaw& law) {
+    if (const auto* r = std::get_if<double>(&law)) return *r;
+    if (const auto* u = std::get_if<UniformRadius>(&law)) return u->high;
+    const auto& listed = std::get<ListedRadius>(law);
+    return *std::max_element(listed.values.begin(), listed.values.end());
+  }
+
+  /// Wide enough for most grains to lie in a few cells, and no grain in too many.
+  static double cell_size(const Scene<Dim>& scene) {
+    double small = std::numeric_limits<double>::infinity();
+    double large = 0;
+    const auto consider = [&](double r) {
+      small = std::min(small, r);
+      large = std::max(large, r);
+    };
+    for (const auto& fill : scene.fills) consider(largest(fill.radius));
+    if (scene.fills.empty()) {
+      for (const auto& grain : scene.grains) consider(grain.radius);
+    } else {
+      for (const auto& grain : scene.grains) large = std::max(large, grain.radius);
+    }
+    return std::max(2 * small, large / 50);
+  }
+
+  static double draw(const RadiusLaw& law, Random& random) {
+    if (const auto* r = std::get_if<double>(&law)) return *r;
+    if (const auto* u = std::get_if<UniformRadius>(&law)) return random.uniform(u->low, u->high);
+    const auto& listed = std::get<ListedRadius>(law);
+    double left =
+        random.uniform() * std::accumulate(listed.weights.begin(), listed.weights.end(), 0.0);
+    std::size_t k = 0;
+    while (k + 1 < listed.values.size() && left >= listed.weights[k]) left -= listed.weights[k++];
+    return listed.values[k];
+  }
+
+  static Vec<Dim> direction(Random& random) {
+    Vec<Dim> v;
+    for (int d = 0; d < Dim; ++d) v[d] = random.normal();
+    return v.normalized();
+  }
+
+  void place_by_hand(std::size_t index) {
+    const PlacedGrain<Dim>& p = scene_.grains[index];
+    const std::string key = "grain[" + std::to_string(index) + "]";
+    const double limit = scene_.largest_initial_overlap;
+    const auto percent = [](double overlap) {
+      return shortest(std::round(1000 * overlap) / 10) + " % of the smaller radius (limit ";
+    };
+    for (const Wall<Dim>& wall : scene_.walls) {
+      if (p.pinned) break;
+      const double distance = wall.foot(p.position).distance;
+      if (distance < 0) throw scene_.error(key, "lies behind wall \"" + wall.name + "\"");
+      const double overlap = (p.radius - distance) / p.radius;
+      if (overlap > limit) {
+        throw scene_.error(key, "overlaps wall \"" + wall.name + "\" by " + percent(overlap) +
+                                    shortest(100 * limit) + " %)");
+      }
+    }
+    occupied_.for_each_near(p.position, p.radius, [&](int j) {
+      const Grain<Dim>& other = placed_.grains[static_cast<std::size_t>(j)];
+      const double overlap = (p.radius + other.radius - (p.position - other.position).norm()) /
+                             std::min(p.radius, other.radius);
+      if (overlap > limit && !(p.pinned && other.pinned)) {
+        throw scene_.error(key, "overlaps grain[" + std::to_string(j) + "] by " + percent(overlap) +
+                                    shortest(100 * limit) + " %)");
+      }
+      return true;
+    });
+    Grain<Dim> grain;
+    grain.position = p.position;
+    grain.velocity = p.velocity;
+    grain.omega = p.spin;
+    grain.radius = p.radius;
+    grain.pinned = p.pinned;
+    add(grain, p.material, -1);
+  }
+
+  void add(Grain<Dim> grain, int material, int group) {
+    const double density = scene_.materials[static_cast<std::size_t>(material)].density;
+    grain.mass = density * grain_volume<Dim>(grain.radius, scene_.depth);
+    // Where all pairs share one law, materials differ in density alone: one kind is enough.
+    grain.kind = scene_.pairs.empty() ? 0 : material;
+    occupied_.add(static_cast<int>(placed_.grains.size()), grain.position, grain.radius);
+    placed_.grains.push_back(grain);
+    placed_.material.push_back(material);
+    placed_.group.push_back(group);
+  }
+
+  bool free(const Vec<Dim>& x, double r) const {
+    for (const Wall<Dim>& wall : scene_.walls) {
+      if (wall.foot(x).distance < r) return false;
+    }
+    bool is_free = true;
+    occupied_.for_each_near(x, r, [&](int j) {
+      const Grain<Dim>& other = placed_.grains[static_cast<std::size_t>(j)];
+      const double reach = r + other.radius;
+      is_free = (x - other.position).squaredNorm() >= reach * reach;
+      return is_free;
+    });
+    return is_free;
+  }
+
+  void fill(std::size_t index) {
+    const Fill<Dim>& f = scene_.fills[index];
+    // Each group has numbers of its own: a change in one leaves the others alone.
+    Random random(scene_.seed + 0x9E3779B97F4A7C15ULL * (index + 1));
+    const int held = f.arrangement == Arrangement::lattice
+                         ? fill_lattice(f, static_cast<int>(index), random)
+                         : fill_at_random(f, static_cast<int>(index), random);
+    const std::string key = "fill[" + std::to_string(index) + "]";
+    if (held == 0) throw scene_.error(key, "\"" + f.name + "\": no grain fits into its region");
+    if (f.count && held < *f.count) {
+      throw scene_.error(key, "\"" + f.name + "\": its region held " + std::to_string(held) +
+                                  " of the " + std::to_string(*f.count) + " grains asked for");
+    }
+  }
+
+  Grain<Dim> grain_of(const Fill<Dim>& f, double radius, const Vec<Dim>& x, Random& random) const {
+    Grain<Dim> grain;
+    grain.position = x;
+    grain.radius = radius;
+    grain.velocity = f.velocity;
+    if (f.random_speed > 0) grain.velocity += f.random_speed * direction(random);
+    return grain;
+  }
+
+  int fill_lattice(const Fill<Dim>& f, int group, Random& random) {
+    const double width = 2 * largest(f.radius) * kSpacing;
+    std::array<std::int64_t, Dim> shape;
+    std::array<std::int64_t, Dim> at{};
+    for (std::size_t d = 0; d < Dim; ++d) {
+      const auto k = static_cast<Eigen::Index>(d);
+      // A region given as a multiple of the spacing holds that many, rounding or not.
+      shape[d] = static_cast<std::int64_t>((f.high[k] - f.low[k]) / width * (1 + 1e-12));
+      if (shape[d] == 0) return 0;
+    }
+    int held = 0;
+    for (bool more = true; more && !(f.count && held == *f.count);) {
+      const double r = draw(f.radius, random);
+      Vec<Dim> x;
+      for (std::size_t d = 0; d < Dim; ++d) {
+        const auto k = static_cast<Eigen::Index>(d);
+        const double room = 0.5 * width / kSpacing * (kSpacing - 1);
+        x[k] = f.low[k] + (static_cast<double>(at[d]) + 0.5) * width + random.uniform(-room, room);
+      }
+      if (free(x, r)) {
+        add(grain_of(f, r, x, random), f.material, group);
+        ++held;
+      }
+      more = false;  // the first axis runs fastest, the last one is up
+      for (std::size_t d = 0; d < Dim && !more; ++d) {
+        more = at[d] + 1 < shape[d];
+        at[d] = more ? at[d] + 1 : 0;
+      }
+    }
+    return held;
+  }
+
+  int fill_at_random(const Fill<Dim>& f, int group, Random& random) {
+    std::vector<double> radii(static_cast<std::size_t>(*f.count));
+    for (double& r : radii) r = draw(f.radius, random);
+    std::sort(radii.begin(), radii.end(), std::greater<>());
+    int held = 0;
+    for (const double r : radii) {
+      bool found = false;
+      for (int attempt = 0; attempt < kTries && !found; ++attempt) {
+        Vec<Dim> x;
+        for (int d = 0; d < Dim; ++d) x[d] = random.uniform(f.low[d] + r, f.high[d] - r);
+        found = ((x - f.low).array() >= r).all() && ((f.high - x).array() >= r).all() && free(x, r);
+        if (found) add(grain_of(f, r, x, random), f.material, group);
+      }
+      if (!found) break;
+      ++held;
+    }
+    return held;
+  }
+
+  const Scene<Dim>& scene_;
+  Occupied<Dim> occupied_;
+  Placement<Dim> placed_;
+};
+
+}  // namespace
+
+template <int Dim>
+Placement<Dim> place_grains(const Scene<Dim>& scene) {
+  return Placer<Dim>(scene).place();
+}
+
+template Placement<2> place_grains<2>(const Scene<2>&);
+template Placement<3> place_grains<3>(const Scene<3>&);
+
+}  // namespace lagrain

@@ -1,0 +1,213 @@
+#include <lagrain/run.hpp>
+
+#include "simulation_run.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace lagrain {
+
+template <int Dim>
+Run<Dim>::Run(Scene<Dim> scene, std::vector<int> materials, std::vector<int> groups)
+    : scene_(std::move(scene)), materials_(std::move(materials)), groups_(std::move(groups)) {
+  // A duration of whole steps must not gain one by rounding.
+  steps_planned_ = static_cast<std::int64_t>(
+      std::ceil(scene_.duration / scene_.time_step.seconds * (1 - 1e-12)));
+}
+
+template <int Dim>
+void Run<Dim>::started() {
+  start_ = ledger();
+  if (scene_.audit) check_contacts();
+}
+
+template <int Dim>
+void Run<Dim>::step() {
+  advance();
+  if (scene_.audit) check_contacts();
+}
+
+template <int Dim>
+void Run<Dim>::advance_to(double t) {
+  while (time() < t - 0.5 * time_step()) step();
+}
+
+template <int Dim>
+void Run<Dim>::check_contacts() {
+  const bool fresh = refreshes() != refreshes_seen_;
+  refreshes_seen_ = refreshes();
+  const bool due =
+      count() <= ContactAudit<Dim>::kBruteForceLimit || fresh || steps() % scene_.audit_every == 0;
+  // A fourth-order step ends with a drift after its last forces: a list that expired there is
+  // renewed before anybody reads it.
+  if (due && near_is_valid()) audit_.check(positions(), radii(), near_pairs());
+}
+
+template <int Dim>
+std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, AnyNeighbourhood<Dim> neighbourhood) {
+  Placement<Dim> placement = place_grains(scene);
+  switch (scene.friction) {
+    case FrictionModel::viscous:
+      return detail::make_viscous_run(scene, std::move(placement), std::move(neighbourhood));
+    case FrictionModel::elastic:
+      return detail::make_elastic_run(scene, std::move(placement), std::move(neighbourhood));
+    case FrictionModel::none:
+      break;
+  }
+  return detail::make_frictionless_run(scene, std::move(placement), std::move(neighbourhood));
+}
+
+template <int Dim>
+std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene) {
+  LAGRAIN_EXPECTS(scene.neighbourhood != NeighbourhoodModel::triangulation,
+                  "the triangulation has to be handed over");
+  return make_run(scene, scene.neighbourhood == NeighbourhoodModel::all_pairs
+                             ? AnyNeighbourhood<Dim>(AllPairs<Dim>{})
+                             : AnyNeighbourhood<Dim>(CellGrid<Dim>{}));
+}
+
+namespace {
+
+std::string normal_text(NormalModel normal) {
+  return normal == NormalModel::hertz ? "Hertz with viscous damping" : "linear spring and dashpot";
+}
+
+std::string friction_text(FrictionModel friction) {
+  switch (friction) {
+    case FrictionModel::none:
+      return "no friction";
+    case FrictionModel::viscous:
+      return "viscous friction cut at Coulomb's limit";
+    case FrictionModel::elastic:
+      return "Coulomb friction with elastic memory";
+  }
+  return {};
+}
+
+std::string padded(std::string text, std::size_t width) {
+  if (text.size() < width) text.append(width - text.size(), ' ');
+  return text;
+}
+std::string right(const std::string& text, std::size_t width) {
+  return std::string(text.size() < width ? width - text.size() : 0, ' ') + text;
+}
+
+template <int Dim, class Law>
+std::string size_row(FrictionModel friction, bool chosen) {
+  const std::size_t grain = bytes_per_grain<Dim, Law::needs>();
+  const std::size_t spin = grain - bytes_per_grain<Dim, Needs{}>();
+  const std::size_t memory = Law::needs.memory ? sizeof(typename Law::template Memory<Dim>) : 0;
+  return (chosen ? "  > " : "    ") + padded(std::string(name_of(friction)), 10) +
+         right(std::to_string(grain), 8) + right(std::to_string(spin), 10) +
+         right(std::to_string(sizeof(Pair) + memory), 12) + right(std::to_string(memory), 12) +
+         "\n";
+}
+
+}  // namespace
+
+std::string rounded(double value, int digits) {
+  if (!std::isfinite(value)) return shortest(value);
+  std::array<char, 64> buffer;
+  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                    std::chars_format::general, digits);
+  return {buffer.data(), result.ptr};
+}
+
+template <int Dim>
+std::string explain(const Run<Dim>& run) {
+  const Scene<Dim>& scene = run.scene();
+  std::string out;
+  const auto line = [&](const char* name, const std::string& value) {
+    out += padded(name, 16) + value + "\n";
+  };
+  const TimeScales scales = run.time_scales();
+  const double fraction = run.time_step() / scales.contact;
+  line("title", scene.title);
+  line("dimension", std::to_string(Dim));
+  line("contact law", normal_text(scene.normal) + ", " + friction_text(scene.friction));
+  line("integrator", std::string(name_of(scene.integrator)));
+  line("neighbourhood", std::string(name_of(scene.neighbourhood)));
+  line("grains", std::to_string(run.count()));
+  line("walls", std::to_string(run.walls().size()));
+  line("contact time", rounded(scales.contact) + " s (the shortest)");
+  line("time step", rounded(run.time_step()) + " s (1/" + rounded(1 / fraction) + " contact)");
+  line("safe step", rounded(scales.safe_step) + " s (the largest allowed)");
+  line("steps", std::to_string(run.steps_planned()) + " for " + rounded(scene.duration) + " s");
+  const ModelSize size = run.size();
+  const auto bytes = [&](std::size_t whole, std::size_t part, const char* what) {
+    return std::to_string(whole) +
+           (part > 0 ? ", " + std::to_string(part) + " of them for " + what : "");
+  };
+  line("bytes per grain", bytes(size.per_grain, size.spin_per_grain, "spin"));
+  line("bytes per pair", bytes(size.per_near_pair, size.memory_per_pair, "memory"));
+  out += "\nwhat friction costs [bytes]\n";
+  out += "    friction     grain   of spin  near pair   of memory\n";
+  out += size_row<Dim, LinearSpring>(FrictionModel::none, scene.friction == FrictionModel::none);
+  out += size_row<Dim, ViscousFriction<LinearSpring>>(FrictionModel::viscous,
+                                                      scene.friction == FrictionModel::viscous);
+  out += size_row<Dim, CundallStrack<LinearSpring>>(FrictionModel::elastic,
+                                                    scene.friction == FrictionModel::elastic);
+  return out;
+}
+
+template <int Dim>
+std::vector<std::pair<std::string, std::string>> facts(const Run<Dim>& run) {
+  std::vector<std::pair<std::string, std::string>> list;
+  const auto fact = [&](const char* name, std::string value) {
+    list.emplace_back(name, std::move(value));
+  };
+  const auto s = run.statistics();
+  const Ledger now = run.ledger();
+  fact("grains", std::to_string(run.count()));
+  fact("steps", std::to_string(run.steps()));
+  fact("time", rounded(run.time(), 6) + " s");
+  fact("time step", rounded(run.time_step()) + " s, 1/" +
+                        rounded(run.time_scales().contact / run.time_step()) +
+                        " of the shortest contact");
+  fact("contacts", std::to_string(s.contacts) + " between grains, " +
+                       std::to_string(s.wall_contacts) + " with walls");
+  fact("coordination", rounded(s.coordination));
+  fact("mean overlap", rounded(100 * s.mean_overlap) + " % of the smaller radius");
+  fact("largest overlap", rounded(100 * s.largest_overlap) + " % of the smaller radius");
+  fact("kinetic energy", rounded(now.kinetic) + " J");
+  fact("energy residual", rounded(residual(now, run.start())) + " J");
+  fact("contacts audited", run.scene().audit ? std::to_string(run.audit().contacts()) + " in " +
+                                                   std::to_string(run.audit().checks()) + " checks"
+                                             : std::string("none"));
+  if (run.scene().audit) fact("contacts missed", std::to_string(run.audit().missed()));
+  fact("near list", std::to_string(run.near_pairs().size()) + " pairs, " +
+                        std::to_string(run.refreshes()) + " refreshes");
+  const auto per_contact = [&](std::int64_t pairs) {
+    return rounded(static_cast<double>(pairs) / static_cast<double>(s.contacts));
+  };
+  if (s.contacts > 0) {
+    fact("near pairs per contact", per_contact(static_cast<std::int64_t>(run.near_pairs().size())));
+  }
+  fact("neighbourhood", run.neighbourhood().name());
+  if (const TriangulationCost* cost = run.neighbourhood().cost()) {
+    const std::int64_t edges = run.neighbourhood().edges();
+    fact("edges", std::to_string(edges));
+    if (s.contacts > 0) fact("edges per contact", per_contact(edges));
+    fact("triangulation updates", std::to_string(cost->updates) + ", " +
+                                      std::to_string(cost->moved) + " grains moved, " +
+                                      std::to_string(cost->ladder.flips) + " flips");
+    fact("repairs", std::to_string(cost->ladder.extracted + cost->ladder.unstuck) +
+                        " grains taken out, " + std::to_string(cost->ladder.rebuilds) +
+                        " rebuilds, " + std::to_string(cost->searched) + " range searches");
+  }
+  return list;
+}
+
+template class Run<2>;
+template class Run<3>;
+template std::unique_ptr<Run<2>> make_run<2>(const Scene<2>&, AnyNeighbourhood<2>);
+template std::unique_ptr<Run<3>> make_run<3>(const Scene<3>&, AnyNeighbourhood<3>);
+template std::unique_ptr<Run<2>> make_run<2>(const Scene<2>&);
+template std::unique_ptr<Run<3>> make_run<3>(const Scene<3>&);
+template std::string explain<2>(const Run<2>&);
+template std::string explain<3>(const Run<3>&);
+template std::vector<std::pair<std::string, std::string>> facts<2>(const Run<2>&);
+template std::vector<std::pair<std::string, std::string>> facts<3>(const Run<3>&);
+
+}  // namespace lagrain

@@ -1,0 +1,169 @@
+#pragma once
+/// @file
+/// The one implementation of Run, templated on the model. Included by the run_*.cpp files alone,
+/// each of which compiles the models of one friction law.
+
+#include <lagrain/cundall_strack.hpp>
+#include <lagrain/hertz.hpp>
+#include <lagrain/hooke.hpp>
+#include <lagrain/integrator.hpp>
+#include <lagrain/run.hpp>
+#include <lagrain/simulation.hpp>
+#include <lagrain/viscous_friction.hpp>
+
+#include <utility>
+
+namespace lagrain::detail {
+
+template <class Law>
+struct MakeLaw;
+
+template <>
+struct MakeLaw<LinearSpring> {
+  static LinearSpring from(const LawNumbers& n) {
+    return LinearSpring::with_restitution(n.stiffness, n.restitution);
+  }
+};
+template <>
+struct MakeLaw<Hertz> {
+  static Hertz from(const LawNumbers& n) {
+    return Hertz::with_restitution(n.modulus, n.restitution, n.impact_speed);
+  }
+};
+template <class Normal>
+struct MakeLaw<ViscousFriction<Normal>> {
+  static ViscousFriction<Normal> from(const LawNumbers& n) {
+    return {MakeLaw<Normal>::from(n), n.friction, n.tangential_damping};
+  }
+};
+template <class Normal>
+struct MakeLaw<CundallStrack<Normal>> {
+  static CundallStrack<Normal> from(const LawNumbers& n) {
+    return {MakeLaw<Normal>::from(n), n.friction, n.stiffness_ratio, n.tangential_damping};
+  }
+};
+
+template <int Dim, class Law, class Motion>
+class SimulationRun final : public Run<Dim> {
+ public:
+  using Sim = Simulation<Dim, Law, Motion, AnyNeighbourhood<Dim>>;
+
+  SimulationRun(Scene<Dim> scene, Placement<Dim> placement, Grains<Dim, Law::needs> grains,
+                LawTable<Law> laws, std::vector<Wall<Dim>> walls, TimeScales scales,
+                AnyNeighbourhood<Dim> neighbourhood)
+      : Run<Dim>(scene, std::move(placement.material), std::move(placement.group)),
+        scales_(scales),
+        sim_(std::move(grains), std::move(laws), std::move(walls),
+             {scene.gravity, scene.time_step.seconds, scene.largest_overlap},
+             std::move(neighbourhood)) {
+    this->started();
+  }
+
+  std::int64_t steps() const override { return sim_.steps(); }
+  double time() const override { return sim_.time(); }
+  TimeScales time_scales() const override { return scales_; }
+  const Columns<Dim>& positions() const override { return sim_.grains().position; }
+  const Columns<Dim>& velocities() const override { return sim_.grains().velocity; }
+  const Columns<kSpinDim<Dim>>* spins() const override {
+    if constexpr (Law::needs.spin) return &sim_.grains().omega;
+    return nullptr;
+  }
+  const Eigen::VectorXd& radii() const override { return sim_.grains().radius; }
+  const Eigen::VectorXd& masses() const override { return sim_.grains().mass; }
+  const std::vector<Wall<Dim>>& walls() const override { return sim_.walls(); }
+  ContactStatistics statistics() const override { return contact_statistics(sim_); }
+  Ledger ledger() const override { return energy_ledger(sim_); }
+  const std::vector<Pair>& near_pairs() const override { return sim_.near().grains.pairs; }
+  std::int64_t refreshes() const override { return sim_.near().refreshes(); }
+  const AnyNeighbourhood<Dim>& neighbourhood() const override { return sim_.neighbourhood(); }
+  double neighbourhood_seconds() const override { return sim_.neighbourhood_seconds(); }
+
+  std::vector<ContactRecord<Dim>> contacts() const override {
+    std::vector<ContactRecord<Dim>> list;
+    sim_.for_each_contact(
+        [&](Pair pair, const Touch<Dim>& touch, const Response<Dim>& response, const auto&) {
+          list.push_back({pair.i, pair.j, -1, touch.overlap, touch.normal, response.force});
+        });
+    sim_.for_each_wall_contact(
+        [&](WallPair pair, const Touch<Dim>& touch, const Response<Dim>& response, const auto&) {
+          list.push_back({pair.i, -1, pair.wall, touch.overlap, touch.normal, response.force});
+        });
+    return list;
+  }
+
+  ModelSize size() const override {
+    ModelSize s;
+    s.per_grain = bytes_per_grain<Dim, Law::needs>();
+    s.spin_per_grain = s.per_grain - bytes_per_grain<Dim, Needs{}>();
+    s.memory_per_pair = Law::needs.memory ? sizeof(typename Sim::Memory) : 0;
+    s.per_near_pair = sizeof(Pair) + s.memory_per_pair;
+    return s;
+  }
+
+ private:
+  void advance() override { sim_.step(); }
+  bool near_is_valid() const override {
+    return !sim_.near().expired(sim_.grains().position, sim_.walls(), sim_.time());
+  }
+
+  TimeScales scales_;
+  Sim sim_;
+};
+
+/// The second half of make_run: law and grains as types.
+template <int Dim, class Law>
+std::unique_ptr<Run<Dim>> make_run_with(const Scene<Dim>& scene, Placement<Dim> placement,
+                                        AnyNeighbourhood<Dim> neighbourhood) {
+  LawTable<Law> laws(MakeLaw<Law>::from(scene.law),
+                     scene.pairs.empty() ? 1 : static_cast<int>(scene.materials.size()));
+  for (const PairLaw& pair : scene.pairs) laws.set(pair.a, pair.b, MakeLaw<Law>::from(pair.law));
+  std::vector<Wall<Dim>> walls = scene.walls;
+  if (scene.pairs.empty()) {
+    for (Wall<Dim>& wall : walls) wall.kind = 0;
+  }
+  auto grains = make_grains<Dim, Law::needs>(placement.grains);
+
+  const TimeScales scales = time_scales(grains, laws, walls);
+  Scene<Dim> resolved = scene;
+  if (!(scene.time_step.seconds > 0)) {
+    resolved.time_step.seconds = scene.time_step.fraction_of_contact * scales.contact;
+  }
+  if (!(resolved.time_step.seconds <= scales.safe_step)) {
+    throw scene.error("time_step",
+                      rounded(resolved.time_step.seconds) +
+                          " s is too large: the stiffest contact lasts " + rounded(scales.contact) +
+                          " s and allows at most " + shortest(scales.safe_step) + " s (\"" +
+                          rounded(0.999 * scales.safe_step / scales.contact) + " contact\")");
+  }
+
+  const auto finish = [&]<class Motion>(Motion) -> std::unique_ptr<Run<Dim>> {
+    return std::make_unique<SimulationRun<Dim, Law, Motion>>(
+        std::move(resolved), std::move(placement), std::move(grains), std::move(laws),
+        std::move(walls), scales, std::move(neighbourhood));
+  };
+  switch (scene.integrator) {
+    case IntegratorModel::symplectic_euler:
+      return finish(SymplecticEuler{});
+    case IntegratorModel::fourth_order:
+      // With friction the scene reader has refused it already.
+      if constexpr (!Law::needs.spin) return finish(ForestRuth{});
+      break;
+    case IntegratorModel::velocity_verlet:
+      return finish(VelocityVerlet<Dim>{});
+  }
+  throw scene.error("integrator",
+                    "\"fourth order\" is for forces without loss: it needs friction = \"none\"");
+}
+
+/// The models of one friction law, in one file each.
+template <int Dim>
+std::unique_ptr<Run<Dim>> make_frictionless_run(const Scene<Dim>&, Placement<Dim>,
+                                                AnyNeighbourhood<Dim>);
+template <int Dim>
+std::unique_ptr<Run<Dim>> make_viscous_run(const Scene<Dim>&, Placement<Dim>,
+                                           AnyNeighbourhood<Dim>);
+template <int Dim>
+std::unique_ptr<Run<Dim>> make_elastic_run(const Scene<Dim>&, Placement<Dim>,
+                                           AnyNeighbourhood<Dim>);
+
+}  // namespace lagrain::detail

@@ -1,0 +1,70 @@
+#pragma once
+/// @file
+/// What a figure is. Each is one file that draws it and says what it shows; figures.cpp lists them.
+
+#include <filesystem>
+#include <functional>
+#include <iosfwd>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace lagrain {
+
+/// What a figure is told.
+struct FigureOptions {
+  std::filesystem::path out;     ///< folder for its files; it exists
+  std::filesystem::path scenes;  ///< folder of the scene files
+  bool quick = false;            ///< same picture from a smaller scene
+  /// How far it has come [0 to 1] and what it is doing; may be called at every step.
+  std::function<void(double fraction, const std::string& doing)> progress =
+      [](double, const std::string&) {};
+  /// True once the user wants to stop; a figure then throws Interrupted.
+  std::function<bool()> stop = [] { return false; };
+};
+
+/// The user stopped a figure before it was drawn.
+struct Interrupted : std::runtime_error {
+  Interrupted() : std::runtime_error("stopped by the user") {}
+};
+
+/// A number of the paper beside ours. Text, with units: how many digits make sense differs.
+struct Comparison {
+  std::string quantity;
+  std::string paper;
+  std::string ours;
+};
+
+struct Fact {
+  std::string name;
+  std::string value;
+};
+
+/// What a figure leaves behind. Paths lie in, or are relative to, FigureOptions::out.
+struct FigureResult {
+  std::string caption;
+  std::vector<Comparison> comparisons;
+  std::vector<Fact> facts;
+  std::vector<std::filesystem::path> pictures;   ///< PNG and video are shown, PDF and SVG linked
+  std::vector<std::filesystem::path> downloads;  ///< linked: CSV, scenes
+};
+
+struct Figure {
+  int number;
+  std::string title;
+  FigureResult (*draw)(const FigureOptions&);
+};
+
+/// Every figure that exists, in order.
+const std::vector<Figure>& all_figures();
+
+/// Draws figures in the order of `all`, tells `report` one line each, and renews the gallery
+/// index.html after each one. Figures drawn by an earlier call stay in it.
+/// @param numbers  which; none means all
+/// @throws SceneError for an unknown number, before anything is drawn, or an unwritable folder
+/// @throws Interrupted, SimulationError as a figure throws them; the gallery holds what was drawn
+void draw_figures(const std::vector<Figure>& all, const std::vector<int>& numbers,
+                  const FigureOptions& options,
+                  const std::function<void(const std::string& line)>& report);
+
+}  // namespace lagrain

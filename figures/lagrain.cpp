@@ -1,0 +1,205 @@
+/// @file
+/// The program `lagrain`: runs scenes and draws figures.
+///
+/// Exit codes: 0 done, 1 the simulation went wrong, 2 the input is wrong, 130 stopped by Ctrl-C.
+
+#include "figure.hpp"
+#include "scene_run.hpp"
+
+#include <lagrain/output.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace lagrain;
+
+constexpr int kSimulationFailed = 1;
+constexpr int kBadInput = 2;
+constexpr int kStopped = 130;  // 128 + SIGINT, as shells have it
+
+volatile std::sig_atomic_t stop_requested = 0;
+
+extern "C" void request_stop(int signal) {
+  stop_requested = 1;
+  // A second Ctrl-C must work even if a step never ends.
+  std::signal(signal, SIG_DFL);
+}
+
+bool stopping() {
+  return stop_requested != 0;
+}
+
+/// One line on a terminal that overwrites itself; nothing elsewhere.
+class ProgressLine {
+ public:
+  ~ProgressLine() { clear(); }
+
+  void show(const std::string& text) {
+    if (!terminal_) return;
+    // Carriage return, text, and erase what a longer line has left.
+    std::fprintf(stderr, "\r%s\x1b[K", text.c_str());
+    shown_ = true;
+  }
+  void clear() {
+    if (shown_) std::fputs("\r\x1b[K", stderr);
+    shown_ = false;
+  }
+  bool terminal() const { return terminal_; }
+
+ private:
+  bool terminal_ = isatty(STDERR_FILENO) == 1;
+  bool shown_ = false;
+};
+
+std::string clock_text(double seconds) {
+  const auto whole = static_cast<long>(seconds + 0.5);
+  char text[32];
+  if (whole < 3600) {
+    std::snprintf(text, sizeof text, "%ld:%02ld", whole / 60, whole % 60);
+  } else {
+    std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
+  }
+  return text;
+}
+
+std::string percent(double fraction) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%3.0f %%", 100 * fraction);
+  return text;
+}
+
+struct RunArguments {
+  std::string scene;
+  std::string out;
+  bool explain = false;
+};
+
+template <int Dim>
+int run_scene(const RunArguments& arguments) {
+  const Scene<Dim> scene = read_scene<Dim>(arguments.scene);
+  const auto run = make_scene_run(scene);
+  if (arguments.explain) {
+    std::cout << explain(*run);
+    return 0;
+  }
+  RecordOptions options;
+  options.folder = arguments.out.empty() ? fs::path("runs") / fs::path(arguments.scene).stem()
+                                         : fs::path(arguments.out);
+  options.stop = stopping;
+  ProgressLine line;
+  if (line.terminal()) {
+    options.progress = [&](const Progress& p) {
+      line.show(percent(p.fraction) + "  t = " + rounded(p.time, 4) + " s of " +
+                rounded(scene.duration, 4) + " s  " + std::to_string(p.contacts) + " contacts  " +
+                clock_text(p.seconds_left) + " left");
+    };
+  }
+  const bool finished = record(*run, options);
+  line.clear();
+  if (finished) {
+    std::cout << "wrote " << options.folder.string() << "\n";
+    return 0;
+  }
+  std::cerr << "lagrain: stopped at t = " << rounded(run->time(), 4)
+            << " s; what was computed is in " << options.folder.string() << "\n";
+  return kStopped;
+}
+
+int run_command(const RunArguments& arguments) {
+  const int dimension = scene_dimension(arguments.scene);
+  if (dimension == 3) {
+    throw SceneError(fs::path(arguments.scene).filename().string() +
+                     ": dimension: spheres are not supported yet; expected 2, got 3");
+  }
+  return run_scene<2>(arguments);
+}
+
+struct FigureArguments {
+  std::vector<int> numbers;
+  std::string out = "figures";
+  bool quick = false;
+};
+
+int figure_command(const FigureArguments& arguments) {
+  FigureOptions options;
+  options.out = arguments.out;
+  options.quick = arguments.quick;
+  options.stop = stopping;
+  // A program run from where it was built finds the sources; an installed one its data.
+  options.scenes = fs::is_directory(LAGRAIN_SCENES) ? LAGRAIN_SCENES : LAGRAIN_INSTALLED_SCENES;
+  ProgressLine line;
+  if (line.terminal()) {
+    auto last = std::chrono::steady_clock::time_point{};
+    options.progress = [&line, last](double fraction, const std::string& doing) mutable {
+      const auto now = std::chrono::steady_clock::now();
+      if (now - last < std::chrono::milliseconds(100)) return;
+      last = now;
+      line.show(percent(fraction) + "  " + doing);
+    };
+  }
+  draw_figures(all_figures(), arguments.numbers, options, [&](const std::string& text) {
+    line.clear();
+    std::cout << text << std::endl;
+  });
+  std::cout << "gallery: " << (options.out / "index.html").string() << "\n";
+  return 0;
+}
+
+int complain(const std::string& sentence, int code) {
+  std::cerr << "lagrain: " << sentence << "\n";
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Granular simulation of discs on dynamic regular triangulations."};
+  app.name("lagrain");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", std::string("lagrain ") + version());
+
+  RunArguments run;
+  CLI::App* run_app = app.add_subcommand("run", "Run a scene and write a folder");
+  run_app->add_option("scene", run.scene, "scene file (TOML)")->required();
+  run_app->add_option("--out", run.out, "folder to write (default: runs/NAME of the scene)");
+  run_app->add_flag("--explain", run.explain, "say what the scene is made of; run nothing");
+
+  FigureArguments figure;
+  CLI::App* figure_app = app.add_subcommand("figure", "Draw figures and their gallery");
+  figure_app->add_option("numbers", figure.numbers, "which figures (default: all)");
+  figure_app->add_option("--out", figure.out, "folder to write")->capture_default_str();
+  figure_app->add_flag("--quick", figure.quick, "same pictures from smaller scenes");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& wish) {  // --help, --version
+    return app.exit(wish);
+  } catch (const CLI::ParseError& error) {
+    return complain(std::string(error.what()) + " (see lagrain --help)", kBadInput);
+  }
+
+  std::signal(SIGINT, request_stop);
+  std::signal(SIGTERM, request_stop);
+  try {
+    return run_app->parsed() ? run_command(run) : figure_command(figure);
+  } catch (const SceneError& error) {
+    return complain(error.what(), kBadInput);
+  } catch (const Interrupted&) {
+    return complain("stopped; what was drawn is in " + figure.out, kStopped);
+  } catch (const SimulationError& error) {
+    return complain(error.what(), kSimulationFailed);
+  } catch (const std::exception& error) {
+    return complain(std::string("internal error: ") + error.what(), kSimulationFailed);
+  }
+}

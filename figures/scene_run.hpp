@@ -1,0 +1,16 @@
+#pragma once
+/// @file
+/// Scenes of any neighbourhood, the triangulation included.
+
+#include <lagrain/run.hpp>
+
+#include <memory>
+
+namespace lagrain {
+
+/// Builds the simulation that a scene names; see make_run.
+/// @throws SceneError
+template <int Dim>
+std::unique_ptr<Run<Dim>> make_scene_run(const Scene<Dim>& scene);
+
+}  // namespace lagrain

@@ -1,0 +1,110 @@
+// What a step costs, and what it is worth: discs, settled and shaken, with the triangulation and
+// with linked cells. Every time stands beside the errors of the same run.
+
+#include "beds.hpp"
+
+#include <lagrain/audit.hpp>
+#include <lagrain/cell_grid.hpp>
+#include <lagrain/triangulation2.hpp>
+#include <lagrain/triangulation_neighbourhood.hpp>
+
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+#include <cstdint>
+#include <type_traits>
+
+namespace {
+
+using namespace lagrain;
+using namespace lagrain::bench;
+
+using Triangulated = TriangulationNeighbourhood<2>;
+
+template <class N>
+constexpr bool kIsTriangulation = std::is_same_v<N, Triangulated>;
+
+std::int64_t edge_count(const Triangulation<2>& t) {
+  std::int64_t edges = 0;
+  t.for_each_edge([&](int, int) { ++edges; });
+  return edges;
+}
+
+template <class N>
+void step(benchmark::State& state, bool shaken) {
+  const int n = static_cast<int>(state.range(0));
+  const auto ratio = static_cast<double>(state.range(1));
+  Bed<N> bed = make_bed<N>(n, ratio, shaken);
+  // Let the margins adapt, and the shaken bed begin to move.
+  for (int s = 0; s < (shaken ? 3000 : 200); ++s) bed.step();
+
+  ContactAudit<2> audit;
+  const Ledger start = energy_ledger(bed);
+  const std::int64_t first_step = bed.steps();
+  const std::int64_t first_refresh = bed.near().refreshes();
+  const double before = bed.neighbourhood_seconds();
+  TriangulationCost cost_before;
+  if constexpr (kIsTriangulation<N>) cost_before = bed.neighbourhood().cost();
+  double seconds = 0;
+  double near_pairs = 0;
+  double contacts = 0;
+  double deepest = 0;
+  int samples = 0;
+  for (auto _ : state) {
+    const auto begin = std::chrono::steady_clock::now();
+    for (int s = 0; s < 100; ++s) bed.step();
+    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    state.PauseTiming();
+    audit.check(bed.grains().position, bed.grains().radius, bed.near().grains.pairs);
+    const ContactStatistics statistics = contact_statistics(bed);
+    near_pairs += static_cast<double>(bed.near().grains.pairs.size());
+    contacts += static_cast<double>(statistics.contacts);
+    deepest = std::max(deepest, statistics.largest_overlap);
+    ++samples;
+    state.ResumeTiming();
+  }
+  const auto steps = static_cast<double>(bed.steps() - first_step);
+  const Ledger now = energy_ledger(bed);
+
+  auto& counters = state.counters;
+  counters["ns_per_grain_step"] = 1e9 * seconds / steps / n;
+  counters["neighbourhood_%"] = 100 * (bed.neighbourhood_seconds() - before) / seconds;
+  counters["contacts_per_grain"] = contacts / samples / n;
+  counters["near_per_contact"] = near_pairs / contacts;
+  counters["refreshes_per_1000"] =
+      1000 * static_cast<double>(bed.near().refreshes() - first_refresh) / steps;
+  if constexpr (kIsTriangulation<N>) {
+    const TriangulationCost& cost = bed.neighbourhood().cost();
+    counters["edges_per_contact"] =
+        static_cast<double>(edge_count(bed.neighbourhood().triangulation())) * samples / contacts;
+    counters["updates_per_1000"] =
+        1000 * static_cast<double>(cost.updates - cost_before.updates) / steps;
+    counters["rebuilds"] = static_cast<double>(cost.ladder.rebuilds);
+  }
+  counters["bytes_per_grain"] = static_cast<double>(bytes_per_grain<2, Law::needs>());
+  counters["missed"] = static_cast<double>(audit.missed());
+  counters["audited"] = static_cast<double>(audit.contacts());
+  counters["largest_overlap_%"] = 100 * deepest;
+  const double turnover = std::max({now.kinetic + now.elastic, now.dashpot + now.friction -
+                                    start.dashpot - start.friction, 1e-300});
+  counters["energy_residual_%"] = 100 * residual(now, start) / turnover;
+}
+
+void settled_triangulation(benchmark::State& state) { step<Triangulated>(state, false); }
+void settled_cells(benchmark::State& state) { step<CellGrid<2>>(state, false); }
+void shaken_triangulation(benchmark::State& state) { step<Triangulated>(state, true); }
+void shaken_cells(benchmark::State& state) { step<CellGrid<2>>(state, true); }
+
+// Number of discs, ratio of the largest radius to the smallest.
+void scenes(benchmark::internal::Benchmark* b) {
+  for (const int n : {1000, 10000, 100000}) b->Args({n, 2});
+  b->Args({10000, 10});
+  b->Unit(benchmark::kMillisecond)->MinTime(2);
+}
+
+BENCHMARK(settled_triangulation)->Apply(scenes);
+BENCHMARK(settled_cells)->Apply(scenes);
+BENCHMARK(shaken_triangulation)->Apply(scenes);
+BENCHMARK(shaken_cells)->Apply(scenes);
+
+}  // namespace

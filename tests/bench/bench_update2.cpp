@@ -1,0 +1,111 @@
+/// @file
+/// What an update of the triangulation in the plane costs against building it anew.
+///
+/// Build and update alternate inside one benchmark, so that a busy machine slows both; the ratio is
+/// that of their medians. Link with benchmark_main.
+
+#include <lagrain/random.hpp>
+#include <lagrain/triangulation2.hpp>
+
+#include <benchmark/benchmark.h>
+
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+namespace {
+
+using namespace lagrain;
+
+struct Discs {
+  Columns<2> x;
+  Eigen::VectorXd w;
+};
+
+/// Disjoint discs of radius 0.35 to 0.5 on a jittered square lattice, row by row.
+Discs jittered_discs(Random& random, int count) {
+  const int side = static_cast<int>(std::ceil(std::sqrt(count)));
+  Discs discs{Columns<2>(2, count), Eigen::VectorXd(count)};
+  for (int i = 0; i < count; ++i) {
+    discs.x(0, i) = 1.2 * (i % side) + random.uniform(-0.3, 0.3);
+    discs.x(1, i) = 1.2 * (i / side) + random.uniform(-0.3, 0.3);
+    const double r = random.uniform(0.35, 0.5);
+    discs.w[i] = r * r;
+  }
+  return discs;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Processor time of this thread [s]; a shared machine takes the wall clock's time away.
+double now() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+template <class F>
+double seconds(F&& f) {
+  const double start = now();
+  f();
+  return now() - start;
+}
+
+/// Arguments: number of discs, per cent of them that move, displacement in thousandths of r = 0.5.
+void update_against_build(benchmark::State& state) {
+  const auto count = static_cast<int>(state.range(0));
+  const double fraction = static_cast<double>(state.range(1)) / 100;
+  const double step = static_cast<double>(state.range(2)) / 1000 * 0.5;
+  Random random(1);
+  Discs discs = jittered_discs(random, count);
+  Triangulation<2> updated, built;
+  updated.build(discs.x, discs.w);
+  UpdateReport total;
+  std::vector<double> update_times, build_times;
+  double moved_sites = 0;
+  std::vector<int> moved;
+
+  for (auto _ : state) {
+    moved.clear();
+    for (int i = 0; i < count; ++i) {
+      if (random.uniform() >= fraction) continue;
+      const double angle = random.uniform(0, 2 * std::numbers::pi);
+      discs.x(0, i) += step * std::cos(angle);
+      discs.x(1, i) += step * std::sin(angle);
+      moved.push_back(i);
+    }
+    update_times.push_back(seconds([&] { total += updated.move(moved, discs.x, discs.w); }));
+    build_times.push_back(seconds([&] { built.build(discs.x, discs.w); }));
+    moved_sites += static_cast<double>(moved.size());
+    state.SetIterationTime(update_times.back());
+  }
+
+  const double updates = static_cast<double>(update_times.size());
+  const auto per_update = [&](std::int64_t value) { return static_cast<double>(value) / updates; };
+  state.counters["rebuild_over_update"] = median(build_times) / median(update_times);
+  state.counters["ns_per_moved"] =
+      1e9 * median(update_times) / std::max(1.0, moved_sites / updates);
+  state.counters["ns_per_built"] = 1e9 * median(build_times) / count;
+  state.counters["flips"] = per_update(total.flips);
+  state.counters["extracted"] = per_update(total.extracted);
+  state.counters["unstuck"] = per_update(total.unstuck);
+  state.counters["rebuilds"] = per_update(total.rebuilds);
+}
+
+BENCHMARK(update_against_build)
+    ->ArgNames({"n", "percent", "milliradii"})
+    ->ArgsProduct({{1000, 10000, 100000}, {1, 10, 100}, {10, 50, 170}})
+    ->UseManualTime()
+    ->Unit(benchmark::kMicrosecond)
+    ->Iterations(15);
+
+}  // namespace
