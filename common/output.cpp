@@ -145,9 +145,10 @@ class Recorder {
   Recorder(Run<Dim>& run, const RecordOptions& options)
       : run_(run), options_(options), begun_(Clock::now()) {
     const OutputPlan& plan = run.scene().output;
-    const double series = plan.series_every > 0 ? plan.series_every : run.scene().duration / 1000;
-    series_every_ = steps_in(series);
-    frames_every_ = plan.frames_every > 0 ? steps_in(plan.frames_every) : run.steps_planned();
+    series_every_ = plan.series_every > 0 ? plan.series_every : run.scene().duration / 1000;
+    frames_every_ = plan.frames_every > 0 ? plan.frames_every : run.scene().duration;
+    series_every_ = std::max(series_every_, run.time_step());
+    frames_every_ = std::max(frames_every_, run.time_step());
     prepare();
     begin_series();
   }
@@ -181,8 +182,14 @@ class Recorder {
  private:
   static constexpr std::int64_t kSnapshotEvery = 64;  // steps
 
-  std::int64_t steps_in(double time) const {
-    return std::max<std::int64_t>(1, std::llround(time / run_.time_step()));
+  /// The step of the k-th frame or sample. One that would come a step before the end is the last.
+  std::int64_t due(std::int64_t k, double every) const {
+    const std::int64_t step = std::llround(static_cast<double>(k) * every / run_.time_step());
+    return step >= run_.steps_planned() - 1 ? run_.steps_planned() : step;
+  }
+
+  void advance(std::int64_t& next, std::int64_t& k, double every) const {
+    while (next <= run_.steps() && next < run_.steps_planned()) next = due(++k, every);
   }
 
   void prepare() {
@@ -219,8 +226,14 @@ class Recorder {
 
   /// After a step: whatever is due.
   void note() {
-    if (run_.steps() % series_every_ == 0) sample();
-    if (run_.steps() % frames_every_ == 0) write_frame();
+    if (run_.steps() >= next_sample_) {
+      sample();
+      advance(next_sample_, samples_due_, series_every_);
+    }
+    if (run_.steps() >= next_frame_) {
+      write_frame();
+      advance(next_frame_, frames_due_, frames_every_);
+    }
     if (options_.progress) show_progress();
   }
 
@@ -248,10 +261,9 @@ class Recorder {
 
     largest_overlap_ = std::max(largest_overlap_, s.largest_overlap);
     largest_residual_ = std::max(largest_residual_, std::abs(left));
-    for (const double moved :
-         {now.kinetic - start.kinetic, now.gravity - start.gravity, now.elastic - start.elastic,
-          now.wall_work, now.dashpot, now.friction}) {
-      turned_over_ = std::max(turned_over_, std::abs(moved));
+    for (const double energy : {now.kinetic, now.gravity - start.gravity, now.elastic,
+                                now.wall_work, now.dashpot, now.friction}) {
+      largest_energy_ = std::max(largest_energy_, std::abs(energy));
     }
     last_sample_ = run_.steps();
   }
@@ -287,14 +299,16 @@ class Recorder {
       line("largest sampled overlap", rounded(100 * largest_overlap_) + " % of the smaller radius");
       line("largest residual",
            rounded(largest_residual_) + " J" +
-               (turned_over_ > 0 ? ", " + rounded(100 * largest_residual_ / turned_over_) +
-                                       " % of the energy turned over"
-                                 : std::string()));
+               (largest_energy_ > 0 ? ", " + rounded(100 * largest_residual_ / largest_energy_) +
+                                          " % of the largest energy in the ledger"
+                                    : std::string()));
     } else {
       line("steps", std::to_string(run_.steps()));
     }
+    const double spent = std::chrono::duration<double>(Clock::now() - begun_).count();
     line("wall-clock time",
-         rounded(std::chrono::duration<double>(Clock::now() - begun_).count()) + " s");
+         rounded(spent) + " s, " + rounded(100 * run_.neighbourhood_seconds() / spent) +
+             " % of it for the neighbourhood");
     line("lagrain", std::string(version()) + ", " + compiler());
     write_file(options_.folder / "summary.txt", text);
   }
@@ -317,8 +331,12 @@ class Recorder {
   const RecordOptions& options_;
   Clock::time_point begun_;
   Clock::time_point shown_{};
-  std::int64_t series_every_ = 1;
-  std::int64_t frames_every_ = 1;
+  double series_every_ = 0;  // [s]
+  double frames_every_ = 0;  // [s]
+  std::int64_t samples_due_ = 0;
+  std::int64_t frames_due_ = 0;
+  std::int64_t next_sample_ = 0;  // step
+  std::int64_t next_frame_ = 0;   // step
   Csv series_;
   Csv frames_;
   std::int64_t frame_count_ = 0;
@@ -327,7 +345,7 @@ class Recorder {
   Snapshot<Dim> last_;
   double largest_overlap_ = 0;
   double largest_residual_ = 0;
-  double turned_over_ = 0;
+  double largest_energy_ = 0;
 };
 
 }  // namespace

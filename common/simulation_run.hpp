@@ -76,6 +76,7 @@ class SimulationRun final : public Run<Dim> {
   const std::vector<Pair>& near_pairs() const override { return sim_.near().grains.pairs; }
   std::int64_t refreshes() const override { return sim_.near().refreshes(); }
   const AnyNeighbourhood<Dim>& neighbourhood() const override { return sim_.neighbourhood(); }
+  double neighbourhood_seconds() const override { return sim_.neighbourhood_seconds(); }
 
   std::vector<ContactRecord<Dim>> contacts() const override {
     std::vector<ContactRecord<Dim>> list;

@@ -76,6 +76,23 @@ NamedUnit look_up(std::string_view name) {
   throw std::invalid_argument("unknown unit \"" + std::string(name) + "\"");
 }
 
+/// The double nearest to the decimal number `digits` times 10^power: "0.7" and -2 give 0.007, which
+/// 0.7 / 100 does not.
+double scaled(std::string_view digits, int power) {
+  const std::size_t e = std::min(digits.find_first_of("eE"), digits.size());
+  if (e < digits.size()) {
+    const std::size_t sign = digits[e + 1] == '+' ? 1 : 0;
+    int exponent = 0;
+    std::from_chars(digits.data() + e + 1 + sign, digits.data() + digits.size(), exponent);
+    power += exponent;
+  }
+  const std::string text = std::string(digits.substr(0, e)) + "e" + std::to_string(power);
+  double value = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (failure != std::errc{}) throw std::invalid_argument("too large or too small a number");
+  return value;
+}
+
 }  // namespace
 
 Quantity parse_quantity(std::string_view text) {
@@ -84,7 +101,8 @@ Quantity parse_quantity(std::string_view text) {
   const auto [end, failure] =
       std::from_chars(text.data(), text.data() + text.size(), quantity.value);
   if (failure != std::errc{}) throw std::invalid_argument("no number");
-  std::string_view rest = trimmed(text.substr(static_cast<std::size_t>(end - text.data())));
+  const std::string_view digits = text.substr(0, static_cast<std::size_t>(end - text.data()));
+  std::string_view rest = trimmed(text.substr(digits.size()));
 
   int power = 0;
   double factor = 1;
@@ -94,10 +112,10 @@ Quantity parse_quantity(std::string_view text) {
     std::string_view part = trimmed(rest.substr(0, length));
     int exponent = 1;
     if (const auto hat = part.find('^'); hat != std::string_view::npos) {
-      const std::string_view digits = part.substr(hat + 1);
+      const std::string_view raised = part.substr(hat + 1);
       const auto [stop, bad] =
-          std::from_chars(digits.data(), digits.data() + digits.size(), exponent);
-      if (bad != std::errc{} || stop != digits.data() + digits.size() || std::abs(exponent) > 9) {
+          std::from_chars(raised.data(), raised.data() + raised.size(), exponent);
+      if (bad != std::errc{} || stop != raised.data() + raised.size() || std::abs(exponent) > 9) {
         throw std::invalid_argument("unknown power \"" + std::string(part) + "\"");
       }
       part = part.substr(0, hat);
@@ -114,9 +132,8 @@ Quantity parse_quantity(std::string_view text) {
     rest = trimmed(rest.substr(length + 1));
     if (rest.empty()) throw std::invalid_argument("the unit breaks off");
   }
-  // 10^-3 is not a double, 10^3 is: divide by it and the result is rounded once.
-  const double scale = std::pow(10.0, std::abs(power));
-  quantity.value = factor * (power < 0 ? quantity.value / scale : quantity.value * scale);
+  if (power != 0) quantity.value = scaled(digits, power);
+  quantity.value *= factor;
   return quantity;
 }
 
@@ -126,9 +143,11 @@ std::string to_string(Unit unit) {
   const auto add = [&](const char* name, int power) {
     if (power == 0) return;
     std::string& side = power > 0 ? above : below;
-    side += power > 0 ? (side.empty() ? "" : " ") : "/";
+    side += power < 0 ? "/" : side.empty() ? "" : " ";
     side += name;
-    if (std::abs(power) != 1) side += "^" + std::to_string(std::abs(power));
+    if (std::abs(power) == 1) return;
+    side += '^';
+    side += std::to_string(std::abs(power));
   };
   // What has a name of its own is easier to read.
   if (unit == Unit{1, 1, -2}) return "N";

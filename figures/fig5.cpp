@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-namespace lagrain {
+namespace lagrain::figures {
 
 namespace {
 
@@ -303,7 +303,7 @@ Plot energy_plot(const Record& record) {
     }
   }
   return {.x = {.label = "time [s]", .low = 0},
-          .y = {.label = "energy [kJ]", .low = 0, .high = 1.7 * highest},
+          .y = {.label = "energy [kJ]", .low = 0, .high = 2.1 * highest},
           .series = series,
           .legend = Corner::top_left};
 }
@@ -441,4 +441,4 @@ FigureResult draw_figure5(const FigureOptions& options) {
   return result;
 }
 
-}  // namespace lagrain
+}  // namespace lagrain::figures

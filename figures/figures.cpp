@@ -5,24 +5,24 @@ namespace lagrain {
 // One line per figure: its drawing function is declared here and defined in its own file. Without
 // the renderer there are none.
 
-#ifdef LAGRAIN_RENDER
+#ifdef LAGRAIN_WITH_RENDER
 namespace figures {
 FigureResult draw_figure1(const FigureOptions& options);
 FigureResult draw_figure2(const FigureOptions& options);
 FigureResult draw_figure3(const FigureOptions& options);
 FigureResult draw_figure4(const FigureOptions& options);
-}  // namespace figures
 FigureResult draw_figure5(const FigureOptions& options);
+}  // namespace figures
 #endif
 
 const std::vector<Figure>& all_figures() {
   static const std::vector<Figure> all{
-#ifdef LAGRAIN_RENDER
+#ifdef LAGRAIN_WITH_RENDER
       {1, "Discs and the edges of their regular triangulation", figures::draw_figure1},
       {2, "Laguerre cells, power, and the weight that finds contacts", figures::draw_figure2},
       {3, "Overlapping discs: where the detection works and where it stops", figures::draw_figure3},
       {4, "Moving discs: the triangulation before, stale, and maintained", figures::draw_figure4},
-      {5, "Rock fall on an embankment, and its force chains", draw_figure5},
+      {5, "Rock fall on an embankment, and its force chains", figures::draw_figure5},
 #endif
   };
   return all;

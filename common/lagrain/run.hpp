@@ -72,6 +72,8 @@ class Run {
   virtual const std::vector<Pair>& near_pairs() const = 0;
   virtual std::int64_t refreshes() const = 0;  ///< of the near list
   virtual const AnyNeighbourhood<Dim>& neighbourhood() const = 0;
+  /// Wall-clock time spent on knowing the near pairs [s].
+  virtual double neighbourhood_seconds() const = 0;
   virtual ModelSize size() const = 0;
 
   int count() const { return static_cast<int>(radii().size()); }

@@ -53,7 +53,8 @@ class Simulation {
   using Memory = typename Law::template Memory<Dim>;
 
   /// Evaluates the forces at time 0.
-  /// @throws ContractError if the time step is not safe; the message names the safe one.
+  /// @throws ContractError if the time step is not safe (the message names the safe one), or a kind
+  /// is not in the table of laws.
   Simulation(State grains, LawTable<Law> laws, std::vector<Wall<Dim>> walls, Setting<Dim> setting,
              N neighbourhood = {}, Motion motion = {})
       : grains_(std::move(grains)),
@@ -62,6 +63,7 @@ class Simulation {
         setting_(std::move(setting)),
         neighbourhood_(std::move(neighbourhood)),
         motion_(std::move(motion)) {
+    check_kinds();
     const TimeScales scales = time_scales(grains_, laws_, walls_);
     std::ostringstream message;
     message << "time step " << setting_.time_step << " s: the stiffest contact lasts "
@@ -291,6 +293,20 @@ class Simulation {
       message << "t = " << time() << " s: grain " << i
               << " has a place or velocity that is not a number; a smaller time step would help";
       throw SimulationError(message.str());
+    }
+  }
+
+  void check_kinds() const {
+    const int kinds = laws_.kinds();
+    const std::string have = ", but the table of laws has " + std::to_string(kinds) + " kinds";
+    LAGRAIN_EXPECTS(kinds >= 1, "the table of laws is empty");
+    for (std::size_t i = 0; i < grains_.kind.size(); ++i) {
+      LAGRAIN_EXPECTS(grains_.kind[i] < kinds, "grain " + std::to_string(i) + " is of kind " +
+                                                   std::to_string(grains_.kind[i]) + have);
+    }
+    for (const Wall<Dim>& wall : walls_) {
+      LAGRAIN_EXPECTS(wall.kind >= 0 && wall.kind < kinds,
+                      "wall " + wall.name + " is of kind " + std::to_string(wall.kind) + have);
     }
   }
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <variant>
 #include <vector>
 
 namespace lagrain {
@@ -27,7 +28,9 @@ inline constexpr double kLargestContactFraction = 0.1;
 inline constexpr double kLargestDampingFraction = 0.3;
 
 /// Shortest collision and safe step over all pairs of kinds that occur, with each kind's lightest
-/// grain (the time grows with the mass), and the walls.
+/// grain (the time grows with the mass; in Hertz's law it falls slowly with the radius, so grains
+/// of one kind are taken to share a density), and the walls. A piston yields, like a grain of its
+/// mass.
 template <int Dim, class Law, Needs needs>
 TimeScales time_scales(const Grains<Dim, needs>& g, const LawTable<Law>& laws,
                        const std::vector<Wall<Dim>>& walls) {
@@ -55,7 +58,9 @@ TimeScales time_scales(const Grains<Dim, needs>& g, const LawTable<Law>& laws,
                1 / (1 / g.radius[i] + 1 / g.radius[j]));
     }
     for (const Wall<Dim>& wall : walls) {
-      consider(laws.between(a, static_cast<std::size_t>(wall.kind)), g.mass[i], g.radius[i]);
+      const auto* piston = std::get_if<Piston<Dim>>(&wall.motion);
+      const double m = piston ? 1 / (1 / g.mass[i] + 1 / piston->mass) : g.mass[i];
+      consider(laws.between(a, static_cast<std::size_t>(wall.kind)), m, g.radius[i]);
     }
   }
   return scales;

@@ -35,7 +35,8 @@ struct Steady {
   double stop = std::numeric_limits<double>::infinity();
 };
 
-/// Displacement amplitude sin(2 pi frequency (t - start)) between two times; at rest outside.
+/// Displacement amplitude sin(2 pi frequency (t - start)) between two times; at rest outside, after
+/// the end where it then is.
 template <int Dim>
 struct Shake {
   Vec<Dim> amplitude;    ///< [m]
@@ -59,7 +60,7 @@ struct Wall {
   std::variant<HalfSpace<Dim>, WallSegment<Dim>> shape;
   std::variant<Fixed, Steady<Dim>, Shake<Dim>, Piston<Dim>> motion = Fixed{};
   int kind = 0;                          ///< row of the table of laws
-  Vec<Dim> home = Vec<Dim>::Zero();      ///< where it was at time 0 [m]; `place` sets it
+  Vec<Dim> home = Vec<Dim>::Zero();      ///< where it was at time 0 [m], for motions given in time
   Vec<Dim> velocity = Vec<Dim>::Zero();  ///< [m/s]
   Vec<Dim> force = Vec<Dim>::Zero();     ///< by the grains, in the last step [N]
 
@@ -90,8 +91,8 @@ struct Wall {
     return {distance, away / distance};
   }
 
-  /// Visits, in increasing order, every grain i whose centre x.col(i) is no further than reach(i) [m]
-  /// from the wall's surface.
+  /// Visits, in increasing order, every grain i whose centre x.col(i) is no further than reach(i)
+  /// [m] from the wall's surface.
   template <class Reach, class F>
   void for_each_within(const Columns<Dim>& x, Reach&& reach, F&& visit) const {
     const int n = static_cast<int>(x.cols());
@@ -127,7 +128,7 @@ struct Wall {
   void follow(const Shake<Dim>& m, double t, double) {
     const double omega = 2 * std::numbers::pi * m.frequency;
     const bool on = t >= m.start && t < m.stop;
-    const double phase = omega * ((on ? t : m.start) - m.start);
+    const double phase = omega * (std::clamp(t, m.start, m.stop) - m.start);
     point = home + std::sin(phase) * m.amplitude;
     velocity = on ? Vec<Dim>(omega * std::cos(phase) * m.amplitude) : Vec<Dim>(Vec<Dim>::Zero());
   }

@@ -10,11 +10,19 @@ function(run)
   execute_process(COMMAND ${ARGV} WORKING_DIRECTORY ${WORK} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
 
+# The program that the README shows is built as it stands there.
+file(READ ${CMAKE_CURRENT_LIST_DIR}/../../README.md readme)
+string(REGEX MATCH "```cpp\n[^`]*```" program "${readme}")
+string(REGEX REPLACE "^```cpp\n|```$" "" program "${program}")
+file(WRITE ${WORK}/readme.cpp "${program}")
+
 run(${CMAKE_COMMAND} --install ${LAGRAIN} --prefix ${WORK}/prefix)
 run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK}/build -G ${GENERATOR}
-  -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_PREFIX_PATH=${WORK}/prefix -D RENDER=${RENDER})
+  -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_PREFIX_PATH=${WORK}/prefix -D RENDER=${RENDER}
+  -D README_PROGRAM=${WORK}/readme.cpp)
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/discs)
+run(${WORK}/build/readme)
 if(RENDER)
   run(${WORK}/build/picture)
 endif()

@@ -1,0 +1,33 @@
+#include <lagrain/audit.hpp>
+
+#include <support/motion_scenes.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace lagrain;
+using namespace lagrain::test;
+
+TEST_SUITE("audit") {
+  TEST_CASE("the audit counts the contacts that a list lacks, by brute force and by cells") {
+    for (const int count : {200, ContactAudit<2>::kBruteForceLimit + 500}) {
+      CAPTURE(count);
+      Random random(10);
+      const auto cloud = make_cloud<2>(CloudKind::kUniform, count, random);
+      Eigen::VectorXd margin = Eigen::VectorXd::Zero(count);
+      std::vector<Pair> contacts;
+      AllPairs<2>{}.near_pairs(cloud.x, cloud.radius, margin, contacts);
+      REQUIRE(contacts.size() > 10);
+      ContactAudit<2> audit;
+
+      audit.check(cloud.x, cloud.radius, contacts);
+      CHECK(audit.missed() == 0);
+      contacts.erase(contacts.begin() + 3);
+      contacts.pop_back();
+      audit.check(cloud.x, cloud.radius, contacts);
+
+      CHECK(audit.missed() == 2);
+      CHECK(audit.checks() == 2);
+      CHECK(audit.contacts() == 2 * static_cast<std::int64_t>(contacts.size() + 2));
+    }
+  }
+}

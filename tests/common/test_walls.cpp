@@ -1,0 +1,242 @@
+#include <lagrain/walls.hpp>
+
+#include <lagrain/cell_grid.hpp>
+#include <lagrain/observe.hpp>
+
+#include <support/scenes.hpp>
+#include <support/tolerance.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+using namespace lagrain;
+using namespace lagrain::test;
+
+namespace {
+
+template <int D>
+struct Space {
+  static constexpr int Dim = D;
+};
+
+template <int Dim>
+Grain<Dim> grain_at(double height) {
+  Grain<Dim> g;
+  g.radius = g.mass = 1;
+  g.position = height * up<Dim>();
+  return g;
+}
+
+template <class S>
+void run_for(S& sim, double duration) {
+  const double end = sim.time() + duration;
+  while (sim.time() < end) sim.step();
+}
+
+}  // namespace
+
+TEST_SUITE("walls") {
+  TEST_CASE_TEMPLATE("a half-space is measured along its normal, both ways", S, Space<2>,
+                     Space<3>) {
+    const auto n = oblique<S::Dim>();
+    const auto wall = Wall<S::Dim>::half_space("w", 2 * n, 5 * n);  // the normal is made unit
+
+    const Vec<S::Dim> away = n.unitOrthogonal();
+    CHECK(wall.foot(3.5 * n + 7 * away).distance == doctest::Approx(1.5));
+    CHECK(wall.foot(1.5 * n - 7 * away).distance == doctest::Approx(-0.5));
+    CHECK((wall.foot(9 * n).normal - n).norm() < 1e-15);
+  }
+
+  TEST_CASE_TEMPLATE("the foot on a segment is on its middle, or at an end", S, Space<2>,
+                     Space<3>) {
+    constexpr int Dim = S::Dim;
+    const Vec<Dim> t = oblique<Dim>();
+    const Vec<Dim> n = t.unitOrthogonal();
+    const auto wall = Wall<Dim>::segment("w", 1 * t, 3 * t);
+    const auto check = [&](const Vec<Dim>& x, double distance, const Vec<Dim>& normal) {
+      CHECK(wall.foot(x).distance == doctest::Approx(distance).epsilon(1e-14));
+      CHECK((wall.foot(x).normal - normal).norm() < 1e-14);
+    };
+
+    check(2.3 * t + 0.5 * n, 0.5, n);
+    check(2.3 * t - 0.5 * n, 0.5, -n);  // solid from both sides
+    check(0.2 * t, 0.8, -t);
+    check(3.7 * t, 0.7, t);
+    check(3 * t + 3 * t + 4 * n, 5, 0.6 * t + 0.8 * n);
+    // Exactly on it, some normal at a right angle to it.
+    CHECK(wall.foot(2 * t).distance < 1e-15);
+    CHECK(wall.foot(2 * t).normal.norm() == doctest::Approx(1));
+    const auto axial = Wall<Dim>::segment("w", Vec<Dim>::Zero(), 4 * along<Dim>());
+    CHECK(axial.foot(along<Dim>()).normal.dot(along<Dim>()) == 0);
+  }
+
+  TEST_CASE_TEMPLATE("the grains within reach of a wall are those whose foot is", S, Space<2>,
+                     Space<3>) {
+    constexpr int Dim = S::Dim;
+    Random random(6);
+    Columns<Dim> x(Dim, 200);
+    for (double& c : x.reshaped()) c = random.uniform(-3, 3);
+    for (const auto& wall : {Wall<Dim>::half_space("h", Vec<Dim>::Zero(), oblique<Dim>()),
+                             Wall<Dim>::segment("s", -oblique<Dim>(), oblique<Dim>())}) {
+      std::vector<int> found;
+      wall.for_each_within(
+          x, [](int i) { return i % 2 ? 1.0 : 0.3; }, [&](int i) { found.push_back(i); });
+
+      std::vector<int> expected;
+      for (int i = 0; i < 200; ++i) {
+        if (wall.foot(x.col(i)).distance <= (i % 2 ? 1.0 : 0.3)) expected.push_back(i);
+      }
+      CHECK(found == expected);
+      CHECK(found.size() > 0);
+    }
+  }
+
+  TEST_CASE_TEMPLATE("walls move as their motion says", S, Space<2>, Space<3>) {
+    constexpr int Dim = S::Dim;
+    const Vec<Dim> a = 0.3 * oblique<Dim>();
+    auto wall = Wall<Dim>::half_space("w", 2 * up<Dim>(), up<Dim>());
+    const auto at = [&](double t) {
+      wall.advance(t, 1e-3);
+      return Vec<Dim>(wall.point - 2 * up<Dim>());
+    };
+
+    wall.motion = Steady<Dim>{a, 1, 3};
+    CHECK(at(0.5).norm() < 1e-15);
+    CHECK(wall.velocity.isZero(0));
+    CHECK((at(2.5) - 1.5 * a).norm() < 1e-15);
+    CHECK(wall.velocity == a);
+    CHECK((at(7) - 2 * a).norm() < 1e-15);
+    CHECK(wall.velocity.isZero(0));
+
+    wall.motion = Shake<Dim>{a, 0.5, 1, 100};
+    const double w = std::numbers::pi;
+    CHECK(at(0.5).norm() < 1e-15);
+    CHECK((at(1.7) - std::sin(0.7 * w) * a).norm() < 1e-15);
+    CHECK((wall.velocity - w * std::cos(0.7 * w) * a).norm() < 1e-15);
+  }
+
+  TEST_CASE_TEMPLATE("no wall ever jumps: a moving wall's place is the integral of its velocity", S,
+                     Space<2>, Space<3>) {
+    constexpr int Dim = S::Dim;
+    const Vec<Dim> a = 0.3 * oblique<Dim>();
+    const double dt = 1e-3;
+    // Stopped in mid-swing, at a quarter of a period.
+    for (const std::variant<Fixed, Steady<Dim>, Shake<Dim>, Piston<Dim>>& motion :
+         {decltype(Wall<Dim>::motion){Steady<Dim>{a, 0.2, 0.7}},
+          decltype(Wall<Dim>::motion){Shake<Dim>{a, 2, 0.2, 0.825}}}) {
+      CAPTURE(motion.index());
+      auto wall = Wall<Dim>::half_space("w", Vec<Dim>::Zero(), up<Dim>());
+      wall.motion = motion;
+      wall.advance(0, 0);
+      Vec<Dim> before = wall.point;
+      for (int k = 1; k < 1500; ++k) {
+        wall.advance(k * dt, dt);
+        CHECK((wall.point - before).norm() < 1.01 * 2 * 2 * std::numbers::pi * 0.3 * dt);
+        before = wall.point;
+      }
+      CHECK(wall.velocity.isZero(0));
+    }
+  }
+
+  TEST_CASE_TEMPLATE("a fixed wall carries the weight, sheared by no force of its own", C,
+                     Case<2, LinearSpring>, Case<3, LinearSpring>, Case<2, FrictionalHertz>,
+                     Case<3, FrictionalHertz>) {
+    constexpr int Dim = C::Dim;
+    std::vector<Grain<Dim>> list;
+    for (int k = 0; k < 3; ++k) {
+      list.push_back(grain_at<Dim>(1));
+      list.back().position += 3.0 * k * along<Dim>();
+    }
+    const auto law = make_law<typename C::Law>({.stiffness = 1e5, .restitution = 0.2});
+    auto sim = make_sim<Dim>(list, law, {Wall<Dim>::half_space("f", Vec<Dim>::Zero(), up<Dim>())},
+                             1, -10 * up<Dim>());
+
+    run_for(sim, 1);
+
+    // e = 0.2 means zeta of about 0.7 and a contact of 0.01 s: after a hundred of them nothing is
+    // left.
+    CHECK((sim.walls()[0].force + 30 * up<Dim>()).norm() < 1e-9);
+  }
+
+  TEST_CASE_TEMPLATE("a wall that advances on a grain throws it off with (1 + e) times its speed",
+                     C, Case<2, LinearSpring>, Case<3, LinearSpring>) {
+    constexpr int Dim = C::Dim;
+    auto law = make_law<LinearSpring>({.stiffness = 1e6});
+    auto wall = Wall<Dim>::half_space("ram", Vec<Dim>::Zero(), up<Dim>());
+    wall.motion = Steady<Dim>{2 * up<Dim>()};
+    auto sim = make_sim<Dim>(std::vector<Grain<Dim>>{grain_at<Dim>(1.0005)}, law, {wall}, 10);
+
+    run_for(sim, 0.01);
+
+    // (omega0 dt)^2 = 10^-3 bounds the error of an elastic contact, which is third order.
+    CHECK(relative_error(sim.grains().velocity.col(0).dot(up<Dim>()), 4) < 1e-4);
+    // All its energy is the wall's work.
+    CHECK(relative_error(sim.flow().wall_work, 8) < 1e-3);
+    CHECK(std::abs(energy_ledger(sim).balance()) < 1e-2);
+  }
+
+  TEST_CASE_TEMPLATE("the work of a moving wall is entered at second order", C,
+                     Case<2, LinearSpring>, Case<3, Hertz>) {
+    constexpr int Dim = C::Dim;
+    const auto residual_at = [](double refinement) {
+      const auto law = make_law<typename C::Law>({.stiffness = 1e6});
+      auto wall = Wall<Dim>::half_space("ram", Vec<Dim>::Zero(), up<Dim>());
+      wall.motion = Steady<Dim>{2 * up<Dim>()};
+      auto sim =
+          make_sim<Dim>(std::vector<Grain<Dim>>{grain_at<Dim>(1.0005)}, law, {wall}, refinement);
+      run_for(sim, 0.02);
+      return std::abs(energy_ledger(sim).balance());
+    };
+
+    // The force is zero at both ends of the contact, where the rule of rectangles is that of
+    // trapezes. The places of the ends in a step scatter the error.
+    CHECK(observed_order(residual_at(2), residual_at(64), 32) > 1.6);
+  }
+
+  TEST_CASE_TEMPLATE("a grain on a plate shaken slowly feels gravity plus the plate's acceleration",
+                     C, Case<2, LinearSpring>, Case<3, LinearSpring>) {
+    constexpr int Dim = C::Dim;
+    auto plate = Wall<Dim>::half_space("plate", Vec<Dim>::Zero(), up<Dim>());
+    const double w = 2 * std::numbers::pi;
+    plate.motion = Shake<Dim>{0.1 * up<Dim>(), 1, 0.5};  // 3.9 m/s^2 < g: it never leaves
+    const auto law = make_law<LinearSpring>({.stiffness = 1e6, .restitution = 0.2});
+    auto sim =
+        make_sim<Dim>(std::vector<Grain<Dim>>{grain_at<Dim>(1)}, law, {plate}, 1, -10 * up<Dim>());
+    run_for(sim, 1.5);
+
+    for (int k = 0; k < 10; ++k) {
+      run_for(sim, 0.1);
+      const double a = -0.1 * w * w * std::sin(w * (sim.time() - 0.5));
+      // A spring of 10^3 rad/s under a drive of 2 pi lags by 2 zeta w / omega0 < 1 %.
+      CHECK(std::abs(-sim.walls()[0].force.dot(up<Dim>()) - (10 + a)) < 0.01 * 4);
+    }
+  }
+
+  TEST_CASE_TEMPLATE("a loaded piston comes to rest on the grains and presses with its load", C,
+                     Case<2, LinearSpring>, Case<3, LinearSpring>, Case<2, FrictionalSpring>,
+                     Case<3, FrictionalHertz>) {
+    constexpr int Dim = C::Dim;
+    auto piston = Wall<Dim>::half_space("piston", 4.5 * up<Dim>(), -up<Dim>());
+    piston.motion = Piston<Dim>{3, -50 * up<Dim>()};
+    const auto floor = Wall<Dim>::half_space("floor", Vec<Dim>::Zero(), up<Dim>());
+    const auto law = make_law<typename C::Law>({.stiffness = 1e5, .restitution = 0.2});
+    auto sim = make_sim<Dim>(std::vector<Grain<Dim>>{grain_at<Dim>(1), grain_at<Dim>(3)}, law,
+                             {floor, piston}, 8, -10 * up<Dim>());
+
+    run_for(sim, 5);
+
+    CHECK((sim.walls()[1].force - 50 * up<Dim>()).norm() < 1e-8);
+    CHECK((sim.walls()[0].force + 70 * up<Dim>()).norm() < 1e-8);
+    CHECK(sim.walls()[1].velocity.norm() < 1e-10);
+    if constexpr (std::is_same_v<typename C::Law, LinearSpring>) {
+      const double sunk = (50 + 60 + 70) / 1e5;
+      CHECK(relative_error(4 - sim.walls()[1].point.dot(up<Dim>()), sunk) < 1e-7);
+    }
+    // All the work of its load went into the grains; summed with a force that jumps at first touch,
+    // so to first order: 2 zeta omega0 dt / 2 = 0.7 * 0.3 / 8 of the energy of impact.
+    const double fallen = 4.5 - sim.walls()[1].point.dot(up<Dim>());
+    CHECK(relative_error(sim.flow().wall_work, 50 * fallen) < 0.025);
+  }
+}

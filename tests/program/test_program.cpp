@@ -1,0 +1,255 @@
+#include <lagrain/output.hpp>
+#include <lagrain/scene.hpp>
+
+#include "scene_run.hpp"
+#include "support/cases.hpp"
+#include "support/scene_text.hpp"
+
+#include <doctest/doctest.h>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+using namespace lagrain;
+using namespace lagrain::test;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string content(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+/// A fresh working folder for one test.
+class Place {
+ public:
+  Place()
+      : path_(fs::temp_directory_path() / ("lagrain_test_program_" + std::to_string(getpid()))) {
+    fs::remove_all(path_);
+    fs::create_directories(path_);
+  }
+  ~Place() { fs::remove_all(path_); }
+  Place(const Place&) = delete;
+  Place& operator=(const Place&) = delete;
+
+  fs::path operator/(const std::string& name) const { return path_ / name; }
+  fs::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name, std::ios::binary) << text;
+    return path_ / name;
+  }
+
+  /// Starts the program, its output going to files.
+  pid_t start(const std::vector<std::string>& arguments) const {
+    std::vector<std::string> words{LAGRAIN_PROGRAM};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::cout.flush();  // or the child would print it once more
+    const pid_t child = fork();
+    if (child != 0) return child;
+    if (std::freopen((path_ / "out").c_str(), "w", stdout) == nullptr ||
+        std::freopen((path_ / "err").c_str(), "w", stderr) == nullptr || chdir(path_.c_str()) != 0)
+      _exit(99);
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    execv(LAGRAIN_PROGRAM, argv.data());
+    _exit(98);
+  }
+  static int exit_code(pid_t child) {
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  int run(const std::vector<std::string>& arguments) const { return exit_code(start(arguments)); }
+  std::string out() const { return content(path_ / "out"); }
+  std::string err() const { return content(path_ / "err"); }
+
+ private:
+  fs::path path_;
+};
+
+const std::string kOnTriangulation = with(kHeap, "linked cells", "triangulation");
+
+bool holds(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_SUITE("program") {
+  TEST_CASE("a run writes its folder and says where") {
+    const Place place;
+    place.write("heap.toml", kOnTriangulation);
+
+    CHECK(place.run({"run", "heap.toml"}) == 0);
+
+    CHECK(place.out() == "wrote runs/heap\n");
+    CHECK(place.err().empty());
+    for (const char* file : {"scene.toml", "series.csv", "frames.csv", "summary.txt",
+                             "frames/0000.csv", "frames/0001.csv"}) {
+      CAPTURE(file);
+      CHECK(fs::exists(place / "runs/heap" / file));
+    }
+    CHECK(holds(content(place / "runs/heap/summary.txt"), "regular triangulation"));
+  }
+
+  TEST_CASE("the resolved scene reproduces the run bit for bit, and so do other neighbourhoods") {
+    const Place place;
+    place.write("heap.toml", kOnTriangulation);
+    place.write("cells.toml", kHeap);
+
+    REQUIRE(place.run({"run", "heap.toml", "--out", "a"}) == 0);
+    REQUIRE(place.run({"run", "a/scene.toml", "--out", "b"}) == 0);
+    REQUIRE(place.run({"run", "cells.toml", "--out", "c"}) == 0);
+
+    CHECK(content(place / "a/scene.toml") == content(place / "b/scene.toml"));
+    CHECK(content(place / "a/series.csv") == content(place / "b/series.csv"));
+    CHECK(content(place / "a/frames/0001.csv") == content(place / "b/frames/0001.csv"));
+    CHECK(content(place / "a/frames/0001.csv") == content(place / "c/frames/0001.csv"));
+  }
+
+  TEST_CASE("bad input is one sentence, exit code 2, and nothing written") {
+    const Place place;
+    const auto refused = [&](const std::string& name, const std::string& text) {
+      place.write(name, text);
+      CHECK(place.run({"run", name, "--out", "result"}) == 2);
+      CHECK(place.out().empty());
+      CHECK(!fs::exists(place / "result"));
+      const std::string err = place.err();
+      CHECK(std::count(err.begin(), err.end(), '\n') == 1);
+      return err;
+    };
+
+    CHECK(refused("s.toml", "dimension = 2 2").substr(0, 18) == "lagrain: s.toml:1:");
+    CHECK(refused("s.toml", with(kHeap, "friction = 0.4", "frction = 0.4")) ==
+          "lagrain: s.toml:10: law.friction: missing; expected a number that is not negative (is "
+          "\"frction\" on line 13 meant?)\n");
+    CHECK(refused("s.toml", with(kHeap, "1/25 contact", "fast")) ==
+          "lagrain: s.toml:5: time_step: expected a fraction of contact time (\"1/25 contact\") or "
+          "a time, got \"fast\"\n");
+    CHECK(refused("s.toml", with(kHeap, "[0.05, 0.4]", "[0.05, 0.33]")) ==
+          "lagrain: s.toml:28: grain[1]: overlaps grain[0] by 50 % of the smaller radius (limit 1 "
+          "%)\n");
+    CHECK(holds(refused("s.toml", with(kHeap, "1/25 contact", "1/2 contact")), "allows at most"));
+    CHECK(refused("s.toml", "dimension = 3\n") ==
+          "lagrain: s.toml: dimension: spheres are not supported yet; expected 2, got 3\n");
+  }
+
+  TEST_CASE("a missing scene, an unwritable folder and a wrong flag are exit code 2") {
+    const Place place;
+    place.write("heap.toml", kOnTriangulation);
+    place.write("file", "x");
+
+    CHECK(place.run({"run", "nowhere.toml"}) == 2);
+    CHECK(place.err() == "lagrain: nowhere.toml: cannot be read\n");
+    CHECK(place.run({"run", "heap.toml", "--out", "file/run"}) == 2);
+    CHECK(place.err().substr(0, 35) == "lagrain: file/run: cannot be writte");
+    CHECK(place.run({"run", "heap.toml", "--fast"}) == 2);
+    CHECK(holds(place.err(), "--fast"));
+    CHECK(place.run({}) == 2);
+    CHECK(place.run({"figure", "99"}) == 2);
+    CHECK(place.err().substr(0, 27) == "lagrain: figure 99: there i");
+    CHECK(place.run({"figure", "one"}) == 2);
+  }
+
+  TEST_CASE("a simulation that goes wrong is exit code 1, with grain, time and remedy") {
+    const Place place;
+    place.write("heap.toml",
+                with(with(kOnTriangulation, "velocity = [0, \"-2 m/s\"]", "velocity = [0, -400]"),
+                     "seed = 5", "largest_overlap = 0.2"));
+
+    CHECK(place.run({"run", "heap.toml", "--out", "result"}) == 1);
+
+    const std::string err = place.err();
+    CHECK(std::count(err.begin(), err.end(), '\n') == 1);
+    CHECK(holds(err, "lagrain: t = "));
+    CHECK(holds(err, "grain 0 overlaps grain 1"));
+    CHECK(holds(err, "smaller time step"));
+    CHECK(fs::exists(place / "result/last.csv"));
+    CHECK(fs::exists(place / "result/series.csv"));
+    CHECK(fs::exists(place / "result/frames/0000.csv"));
+  }
+
+  TEST_CASE("Ctrl-C ends the run after a step, keeps what was computed, and exits 130") {
+    const Place place;
+    place.write("heap.toml", with(kOnTriangulation, "\"20 ms\"", "\"1 h\""));
+
+    const pid_t child = place.start({"run", "heap.toml", "--out", "result"});
+    // The first frame is written when the first step is due; the signal handler is older.
+    const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+    while (!fs::exists(place / "result/frames/0000.csv") &&
+           std::chrono::steady_clock::now() < give_up) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    kill(child, SIGINT);
+
+    CHECK(Place::exit_code(child) == 130);
+    CHECK(place.err().substr(0, 24) == "lagrain: stopped at t = ");
+    CHECK(holds(place.err(), "what was computed is in result\n"));
+    CHECK(fs::exists(place / "result/frames/0001.csv"));
+    CHECK(fs::exists(place / "result/series.csv"));
+    CHECK(holds(content(place / "result/summary.txt"), "stopped by the user"));
+    for (const auto& entry : fs::recursive_directory_iterator(place / "result")) {
+      CHECK(entry.path().extension() != ".part");
+    }
+  }
+
+  TEST_CASE("--explain says what the scene is made of, and runs and writes nothing") {
+    const Place place;
+    place.write("heap.toml", kOnTriangulation);
+    place.write("smooth.toml",
+                without(with(kOnTriangulation, "\"elastic\"", "\"none\""), "friction = 0.4"));
+
+    CHECK(place.run({"run", "--explain", "heap.toml"}) == 0);
+    const std::string rough = place.out();
+    CHECK(place.run({"run", "--explain", "smooth.toml"}) == 0);
+    const std::string smooth = place.out();
+
+    for (const char* part :
+         {"dimension       2", "linear spring and dashpot", "velocity Verlet", "grains          14",
+          "contact time", "time step", "safe step", "steps"}) {
+      CAPTURE(part);
+      CHECK(holds(rough, part));
+    }
+    CHECK(holds(rough, "bytes per grain 96, 24 of them for spin\n"));
+    CHECK(holds(rough, "bytes per pair  24, 16 of them for memory\n"));
+    CHECK(holds(smooth, "bytes per grain 72\n"));
+    CHECK(holds(smooth, "bytes per pair  8\n"));
+    CHECK(holds(smooth, "> none            72         0           8           0\n"));
+    CHECK(!fs::exists(place / "runs"));
+  }
+
+  TEST_CASE("the version is printed") {
+    const Place place;
+
+    CHECK(place.run({"--version"}) == 0);
+    CHECK(place.out() == std::string("lagrain ") + version() + "\n");
+  }
+
+  TEST_CASE("every scene of the repository is valid, its step is safe, and it starts to run") {
+    for (const auto& entry : fs::directory_iterator(LAGRAIN_SCENES)) {
+      CAPTURE(entry.path().string());
+      REQUIRE(entry.path().extension() == ".toml");
+      if (scene_dimension(entry.path()) != 2) continue;
+      const Scene<2> scene = read_scene<2>(entry.path());
+      const auto run = make_scene_run(scene);
+      for (int k = 0; k < cases(20, 2000); ++k) run->step();
+      CHECK(run->audit().missed() == 0);
+      CHECK(to_toml(parse_scene<2>(to_toml(run->scene()), "again.toml")) == to_toml(run->scene()));
+    }
+  }
+}

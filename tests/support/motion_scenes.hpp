@@ -1,0 +1,264 @@
+#pragma once
+/// @file
+/// Clouds and scenes that try a neighbourhood: every list against brute force, every trajectory bit
+/// for bit, every step audited.
+
+#include <lagrain/all_pairs.hpp>
+#include <lagrain/audit.hpp>
+
+#include <support/scenes.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lagrain::test {
+
+/// Centres [m] and radii [m].
+template <int Dim>
+struct Cloud {
+  Columns<Dim> x;
+  Eigen::VectorXd radius;
+};
+
+/// The kinds of set that trip neighbour searches.
+enum class CloudKind {
+  kUniform,
+  kSizes,       ///< radii 1 : 100
+  kClusters,    ///< a few tight heaps far from each other
+  kFar,         ///< 10^6 radii from the origin
+  kCoincident,  ///< centres on top of each other
+  kLine,        ///< all on one line
+  kLattice,     ///< touching, equal: every tie there is
+  kOne,
+  kNone
+};
+inline constexpr CloudKind kClouds[] = {
+    CloudKind::kUniform, CloudKind::kSizes,      CloudKind::kClusters,
+    CloudKind::kFar,     CloudKind::kCoincident, CloudKind::kLine,
+    CloudKind::kLattice, CloudKind::kOne,        CloudKind::kNone};
+
+template <int Dim>
+Cloud<Dim> make_cloud(CloudKind kind, int count, Random& random) {
+  if (kind == CloudKind::kOne) count = 1;
+  if (kind == CloudKind::kNone) count = 0;
+  Cloud<Dim> cloud{Columns<Dim>(Dim, count), Eigen::VectorXd(count)};
+  const double side = 2.0 * std::pow(count, 1.0 / Dim);
+  const int row = static_cast<int>(std::ceil(std::pow(count, 1.0 / Dim)));
+  for (int i = 0; i < count; ++i) {
+    cloud.radius[i] = random.uniform(0.7, 1);
+    if (kind == CloudKind::kSizes) cloud.radius[i] = std::pow(10, random.uniform(-2, 0));
+    for (int d = 0, rest = i; d < Dim; ++d, rest /= row) {
+      double& c = cloud.x(d, i);
+      c = random.uniform(0, side);
+      if (kind == CloudKind::kClusters) c = random.normal() + 1000 * ((i % 3) * (d + 1) % 3);
+      if (kind == CloudKind::kFar) c += 1e6;
+      if (kind == CloudKind::kCoincident && i % 3 != 0) c = cloud.x(d, i - 1);
+      if (kind == CloudKind::kLine) c = 1.5 * i;
+      if (kind == CloudKind::kLattice) c = 2 * (rest % row);
+    }
+    if (kind == CloudKind::kLattice) cloud.radius[i] = 1;
+  }
+  return cloud;
+}
+
+/// Moves every grain a little, some far, some not at all.
+template <int Dim>
+void jostle(Cloud<Dim>& cloud, Random& random) {
+  const double size = std::pow(10, random.uniform(-4, 0));
+  for (Eigen::Index i = 0; i < cloud.x.cols(); ++i) {
+    if (random.uniform() < 0.3) continue;
+    const double far = random.uniform() < 0.02 ? 5 : 1;
+    for (int d = 0; d < Dim; ++d) {
+      cloud.x(d, i) += far * size * cloud.radius[i] * random.normal();
+    }
+  }
+}
+
+/// The lists of a neighbourhood, over a walk of the cloud, are those of brute force.
+template <int Dim, class N>
+void check_lists(CloudKind kind, std::uint64_t seed, int count, int rounds) {
+  CAPTURE(seed);
+  CAPTURE(static_cast<int>(kind));
+  Random random(seed);
+  Cloud<Dim> cloud = make_cloud<Dim>(kind, count, random);
+  N neighbourhood;
+  std::vector<Pair> found;
+  std::vector<Pair> expected;
+  for (int round = 0; round < rounds; ++round) {
+    CAPTURE(round);
+    Eigen::VectorXd asked = cloud.radius * random.uniform(0, 0.1);
+    Eigen::VectorXd margin = asked;
+
+    neighbourhood.near_pairs(cloud.x, cloud.radius, margin, found);
+
+    CHECK((margin.array() <= asked.array()).all());
+    AllPairs<Dim>{}.near_pairs(cloud.x, cloud.radius, margin, expected);
+    REQUIRE(found == expected);
+    jostle(cloud, random);
+  }
+}
+
+/// A scene that moves, in units of metre, kilogram, second and k = 10^5 N/m.
+template <int Dim>
+struct MotionScene {
+  std::string name;
+  std::vector<Grain<Dim>> grains;
+  std::vector<Wall<Dim>> walls;
+  Vec<Dim> gravity = Vec<Dim>::Zero();
+};
+
+/// Grains dropped into a box.
+template <int Dim>
+MotionScene<Dim> settling_bed(int count, std::uint64_t seed) {
+  Random random(seed);
+  const auto packed = lattice<Dim>({.count = count, .speed = 0.3}, random);
+  return {"settling bed", packed.grains, box<Dim>(packed.low, packed.high), -10 * up<Dim>()};
+}
+
+/// Grains that swirl through each other in a box, fast against their sound.
+template <int Dim>
+MotionScene<Dim> stirring(int count, std::uint64_t seed) {
+  Random random(seed);
+  const auto packed = lattice<Dim>({.count = count, .speed = 10, .spin = 5}, random);
+  return {"stirring", packed.grains, box<Dim>(packed.low, packed.high)};
+}
+
+/// A cloud that stirs a little and drifts fast as a whole, past a fixed wall and off a moving one.
+template <int Dim>
+MotionScene<Dim> drifting(int count, std::uint64_t seed) {
+  Random random(seed);
+  const auto packed = lattice<Dim>({.count = count, .speed = 3, .spin = 5}, random);
+  MotionScene<Dim> scene{"drifting cloud", packed.grains, {}};
+  const Vec<Dim> drift = 200 * along<Dim>();
+  for (auto& g : scene.grains) g.velocity += drift;
+  scene.walls.push_back(Wall<Dim>::half_space("ground", packed.low, up<Dim>()));
+  scene.walls.push_back(Wall<Dim>::half_space("ram", packed.low, along<Dim>()));
+  scene.walls.back().motion = Steady<Dim>{drift};
+  return scene;
+}
+
+/// Sizes from 1 to `ratio`, scattered without overlap, the small ones everywhere between.
+template <int Dim>
+MotionScene<Dim> size_mix(int count, double ratio, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<double> radii;
+  for (int i = 0; i < count; ++i) radii.push_back(std::pow(ratio, -random.uniform()));
+  std::sort(radii.rbegin(), radii.rend());
+  double volume = 0;
+  for (const double r : radii) volume += grain_volume<Dim>(r);
+  const double side = std::pow(volume / (Dim == 2 ? 0.5 : 0.25), 1.0 / Dim) + 2;
+  MotionScene<Dim> scene{"sizes 1 : " + std::to_string(ratio), {}, {}};
+  for (const double r : radii) {
+    Grain<Dim> g;
+    g.radius = r;
+    g.mass = grain_volume<Dim>(r);
+    for (bool fits = false; !fits;) {
+      for (int d = 0; d < Dim; ++d) g.position[d] = random.uniform(r, side - r);
+      fits = true;
+      for (const Grain<Dim>& o : scene.grains) {
+        fits = fits && (o.position - g.position).norm() > o.radius + r;
+      }
+    }
+    // A tenth of the smallest radius per safe step would be 0.1 r / (0.1 pi r) = 100 m/s: a third.
+    for (int d = 0; d < Dim; ++d) g.velocity[d] = 30 * random.normal();
+    scene.grains.push_back(g);
+  }
+  // Numbers must not follow sizes.
+  for (int i = count - 1; i > 0; --i) {
+    std::swap(scene.grains[static_cast<std::size_t>(i)],
+              scene.grains[static_cast<std::size_t>(random.below(i + 1))]);
+  }
+  scene.walls = box<Dim>(Vec<Dim>::Zero(), Vec<Dim>::Constant(side));
+  return scene;
+}
+
+/// A grain that crosses more than its radius in a step, shot through the others, in the open.
+template <int Dim>
+MotionScene<Dim> bullet(int count, std::uint64_t seed) {
+  Random random(seed);
+  const auto packed = lattice<Dim>({.count = count, .spacing = 0.9, .speed = 0.1}, random);
+  MotionScene<Dim> scene{"bullet", packed.grains, {}};
+  Grain<Dim> shot;
+  shot.radius = 0.5;
+  shot.mass = 1;
+  shot.position = packed.low - 3 * (packed.high - packed.low).normalized();
+  shot.velocity = 1000 * (packed.high - packed.low).normalized();
+  scene.grains.push_back(shot);
+  return scene;
+}
+
+/// Runs one law through the scene; contacts may be as deep as they like.
+template <int Dim, class Law, class N>
+Sim<Dim, Law, N> start(const MotionScene<Dim>& scene, const Law& law, N neighbourhood = {}) {
+  auto grains = make_grains<Dim, Law::needs>(scene.grains);
+  const LawTable<Law> laws(law);
+  Setting<Dim> setting;
+  setting.gravity = scene.gravity;
+  setting.time_step = time_scales(grains, laws, scene.walls).safe_step;
+  setting.largest_overlap = 1e300;
+  return {std::move(grains), laws, scene.walls, setting, std::move(neighbourhood)};
+}
+
+inline constexpr Material kGravel{
+    .stiffness = 1e5, .restitution = 0.6, .friction = 0.5, .tangential_damping_ratio = 0.2};
+
+struct AuditResult {
+  std::int64_t contacts = 0;
+  std::int64_t missed = 0;
+};
+
+/// Audits the near list after every step.
+template <int Dim, class Sim>
+AuditResult audited(Sim& sim, int steps) {
+  ContactAudit<Dim> audit;
+  for (int k = 0; k < steps; ++k) {
+    sim.step();
+    audit.check(sim.grains().position, sim.grains().radius, sim.near().grains.pairs);
+  }
+  return {audit.contacts(), audit.missed()};
+}
+
+template <class Sim>
+auto contact_memories(const Sim& sim) {
+  std::vector<std::pair<Pair, typename Sim::Memory>> all;
+  sim.for_each_contact([&](Pair pair, const auto&, const auto&, const auto& memory) {
+    all.emplace_back(pair, memory);
+  });
+  return all;
+}
+
+/// Two simulations are in the same state, bit for bit, memories and losses included.
+template <class A, class B>
+bool same_bits(const A& a, const B& b) {
+  const auto& g = a.grains();
+  const auto& h = b.grains();
+  bool same = g.position == h.position && g.velocity == h.velocity && g.force == h.force &&
+              a.flow().dashpot == b.flow().dashpot && a.flow().friction == b.flow().friction &&
+              contact_memories(a) == contact_memories(b);
+  if constexpr (A::needs.spin) same = same && g.omega == h.omega && g.torque == h.torque;
+  return same && g.position.allFinite();
+}
+
+/// The trajectory with N is the one with brute force.
+template <int Dim, class Law, class N>
+void check_trajectory(const MotionScene<Dim>& scene, int steps, N neighbourhood = {}) {
+  CAPTURE(scene.name);
+  const Law law = make_law<Law>(kGravel);
+  auto reference = start<Dim>(scene, law, AllPairs<Dim>{});
+  auto sim = start<Dim>(scene, law, std::move(neighbourhood));
+  for (int k = 0; k < steps; ++k) {
+    reference.step();
+    sim.step();
+    if (k % 100 != 99 && k + 1 != steps) continue;
+    CAPTURE(k);
+    REQUIRE(same_bits(sim, reference));
+  }
+  CHECK(sim.flow().dashpot > 0);  // something collided
+}
+
+}  // namespace lagrain::test

@@ -1,0 +1,66 @@
+#pragma once
+/// @file
+/// Small scenes, as text.
+
+#include <stdexcept>
+#include <string>
+
+namespace lagrain::test {
+
+/// Fourteen discs with friction fall into a corner. Every key on its line: messages name them.
+inline const std::string kHeap = R"(title = "heap"
+dimension = 2
+seed = 5
+duration = "20 ms"
+time_step = "1/25 contact"
+gravity = [0, -9.81]
+normal = "linear"
+friction = "elastic"
+neighbourhood = "linked cells"
+[law]
+stiffness = "1e7 N/m"
+restitution = 0.5
+friction = 0.4
+[materials.rock]
+density = "2650 kg/m^3"
+[materials.gravel]
+density = 2000
+[[fill]]
+material = "gravel"
+count = 12
+radius = { uniform = ["8 mm", "10 mm"] }
+region = { low = [0, 0], high = ["0.1 m", "0.2 m"] }
+velocity = [0, -1]
+[[grain]]
+position = [0.05, 0.3]
+radius = "20 mm"
+material = "rock"
+[[grain]]
+position = [0.05, 0.4]
+radius = "20 mm"
+material = "rock"
+velocity = [0, "-2 m/s"]
+[[wall]]
+name = "floor"
+material = "rock"
+point = [0, 0]
+normal = [0, 1]
+[[wall]]
+name = "left"
+material = "rock"
+from = [0, 0]
+to = [0, 1]
+)";
+
+/// `text` with one part replaced.
+inline std::string with(std::string text, const std::string& part, const std::string& instead) {
+  const auto at = text.find(part);
+  if (at == std::string::npos) throw std::logic_error("no \"" + part + "\" in the scene");
+  return text.replace(at, part.size(), instead);
+}
+
+inline std::string without(const std::string& text, const std::string& line) {
+  return with(text, line + "\n", "");
+}
+
+}  // namespace lagrain::test
