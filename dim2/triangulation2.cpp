@@ -3,6 +3,7 @@
 #include <lagrain/check.hpp>
 
 #include <algorithm>
+#include <stdexcept>
 #include <cmath>
 #include <string>
 
@@ -132,6 +133,11 @@ UpdateReport Triangulation<2>::remove(int id) {
 
 UpdateReport Triangulation<2>::finish() {
   std::sort(hidden_.begin(), hidden_.end());
+#ifdef LAGRAIN_AUDIT
+  if (const auto defects = audit(); !defects.empty()) {
+    throw std::logic_error("Triangulation<2>: " + defects.front().sentence);
+  }
+#endif
   return report_;
 }
 

@@ -7,13 +7,15 @@
 #include <lagrain/neighbourhood.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace lagrain {
 
 /// Compares the contacts that a near list holds with those found from nothing: by brute force up to
-/// 1,000 grains, with a fresh grid above.
+/// 1,000 grains, with a fresh grid above. The grid is made for the grains of ordinary size; the few
+/// that are much larger would make its cells far too wide, so they are held against all others.
 template <int Dim>
 class ContactAudit {
  public:
@@ -25,11 +27,11 @@ class ContactAudit {
 
   /// @param near sorted pairs that claim to hold every contact at centres x [m]
   void check(const Columns<Dim>& x, const Eigen::VectorXd& radius, const std::vector<Pair>& near) {
-    Eigen::VectorXd no_margin = Eigen::VectorXd::Zero(radius.size());
     if (radius.size() <= kBruteForceLimit) {
-      AllPairs<Dim>{}.near_pairs(x, radius, no_margin, touching_);
+      no_margin_.setZero(radius.size());
+      AllPairs<Dim>{}.near_pairs(x, radius, no_margin_, touching_);
     } else {
-      grid_.near_pairs(x, radius, no_margin, touching_);
+      find_with_grid(x, radius);
     }
     ++checks_;
     contacts_ += static_cast<std::int64_t>(touching_.size());
@@ -39,7 +41,39 @@ class ContactAudit {
   }
 
  private:
+  static constexpr double kGiant = 4;  // times the median radius
+
+  void find_with_grid(const Columns<Dim>& x, const Eigen::VectorXd& radius) {
+    const int n = static_cast<int>(radius.size());
+    std::vector<double> sizes(radius.begin(), radius.end());
+    std::nth_element(sizes.begin(), sizes.begin() + n / 2, sizes.end());
+    const double giant = kGiant * sizes[static_cast<std::size_t>(n / 2)];
+
+    ordinary_.clear();
+    for (int i = 0; i < n; ++i) {
+      if (radius[i] <= giant) ordinary_.push_back(i);
+    }
+    no_margin_.setZero(static_cast<Eigen::Index>(ordinary_.size()));
+    grid_.near_pairs(x(Eigen::all, ordinary_), radius(ordinary_), no_margin_, touching_);
+    for (Pair& pair : touching_) {
+      pair = {ordinary_[static_cast<std::size_t>(pair.i)],
+              ordinary_[static_cast<std::size_t>(pair.j)]};
+    }
+
+    no_margin_.setZero(n);
+    for (int i = 0; i < n; ++i) {
+      if (radius[i] <= giant) continue;
+      for (int j = 0; j < n; ++j) {
+        const bool counted = radius[j] > giant && j < i;  // two giants, seen from the other one
+        if (j == i || counted || !within_reach<Dim>(x, radius, no_margin_, i, j)) continue;
+        touching_.push_back({std::min(i, j), std::max(i, j)});
+      }
+    }
+  }
+
   CellGrid<Dim> grid_;
+  Eigen::VectorXd no_margin_;
+  std::vector<int> ordinary_;
   std::vector<Pair> touching_;
   std::int64_t checks_ = 0;
   std::int64_t contacts_ = 0;

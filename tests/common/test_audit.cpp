@@ -4,15 +4,23 @@
 
 #include <doctest/doctest.h>
 
+#include <utility>
+
 using namespace lagrain;
 using namespace lagrain::test;
 
+namespace {
+constexpr int kBeyondBruteForce = ContactAudit<2>::kBruteForceLimit + 500;
+}
+
 TEST_SUITE("audit") {
   TEST_CASE("the audit counts the contacts that a list lacks, by brute force and by cells") {
-    for (const int count : {200, ContactAudit<2>::kBruteForceLimit + 500}) {
+    for (const auto& [kind, count] : {std::pair{CloudKind::kUniform, 200},
+                                      std::pair{CloudKind::kUniform, kBeyondBruteForce},
+                                      std::pair{CloudKind::kSizes, kBeyondBruteForce}}) {
       CAPTURE(count);
       Random random(10);
-      const auto cloud = make_cloud<2>(CloudKind::kUniform, count, random);
+      const auto cloud = make_cloud<2>(kind, count, random);
       Eigen::VectorXd margin = Eigen::VectorXd::Zero(count);
       std::vector<Pair> contacts;
       AllPairs<2>{}.near_pairs(cloud.x, cloud.radius, margin, contacts);

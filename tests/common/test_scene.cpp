@@ -212,8 +212,8 @@ TEST_SUITE("scene") {
 
     CHECK(to_toml(twice) == resolved);
     CHECK(twice.walls.at(1).home == once.walls.at(1).home);
-    CHECK(std::get<Segment<2>>(twice.walls.at(1).shape).along ==
-          std::get<Segment<2>>(once.walls.at(1).shape).along);
+    CHECK(std::get<WallSegment<2>>(twice.walls.at(1).shape).along ==
+          std::get<WallSegment<2>>(once.walls.at(1).shape).along);
     CHECK(std::get<HalfSpace<2>>(twice.walls.at(2).shape).normal ==
           std::get<HalfSpace<2>>(once.walls.at(2).shape).normal);
     CHECK(twice.walls.at(2).name == "a \"slope\", 30°");
