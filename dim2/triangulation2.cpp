@@ -3,8 +3,8 @@
 #include <lagrain/check.hpp>
 
 #include <algorithm>
-#include <stdexcept>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 namespace lagrain {

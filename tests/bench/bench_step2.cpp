@@ -19,6 +19,8 @@ namespace {
 using namespace lagrain;
 using namespace lagrain::bench;
 
+constexpr int kStepsPerSample = 100;
+
 using Triangulated = TriangulationNeighbourhood<2>;
 
 template <class N>
@@ -33,10 +35,9 @@ std::int64_t edge_count(const Triangulation<2>& t) {
 template <class N>
 void step(benchmark::State& state, bool shaken) {
   const int n = static_cast<int>(state.range(0));
-  const auto ratio = static_cast<double>(state.range(1));
-  Bed<N> bed = make_bed<N>(n, ratio, shaken);
-  // Let the margins adapt, and the shaken bed begin to move.
-  for (int s = 0; s < (shaken ? 3000 : 200); ++s) bed.step();
+  Bed<N> bed = make_bed<N>(n, shaken);
+  // Let the tiles settle and the margins adapt, or the shaken bed begin to move.
+  for (int s = 0; s < 2000; ++s) bed.step();
 
   ContactAudit<2> audit;
   const Ledger start = energy_ledger(bed);
@@ -52,7 +53,7 @@ void step(benchmark::State& state, bool shaken) {
   int samples = 0;
   for (auto _ : state) {
     const auto begin = std::chrono::steady_clock::now();
-    for (int s = 0; s < 100; ++s) bed.step();
+    for (int s = 0; s < kStepsPerSample; ++s) bed.step();
     seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     state.PauseTiming();
     audit.check(bed.grains().position, bed.grains().radius, bed.near().grains.pairs);
@@ -85,26 +86,34 @@ void step(benchmark::State& state, bool shaken) {
   counters["missed"] = static_cast<double>(audit.missed());
   counters["audited"] = static_cast<double>(audit.contacts());
   counters["largest_overlap_%"] = 100 * deepest;
-  const double turnover = std::max({now.kinetic + now.elastic, now.dashpot + now.friction -
-                                    start.dashpot - start.friction, 1e-300});
+  const double turnover =
+      std::max({now.kinetic + now.elastic,
+                now.dashpot + now.friction - start.dashpot - start.friction, 1e-300});
   counters["energy_residual_%"] = 100 * residual(now, start) / turnover;
 }
 
-void settled_triangulation(benchmark::State& state) { step<Triangulated>(state, false); }
-void settled_cells(benchmark::State& state) { step<CellGrid<2>>(state, false); }
-void shaken_triangulation(benchmark::State& state) { step<Triangulated>(state, true); }
-void shaken_cells(benchmark::State& state) { step<CellGrid<2>>(state, true); }
-
-// Number of discs, ratio of the largest radius to the smallest.
-void scenes(benchmark::internal::Benchmark* b) {
-  for (const int n : {1000, 10000, 100000}) b->Args({n, 2});
-  b->Args({10000, 10});
-  b->Unit(benchmark::kMillisecond)->MinTime(2);
+void settled_triangulation(benchmark::State& state) {
+  step<Triangulated>(state, false);
+}
+void settled_cells(benchmark::State& state) {
+  step<CellGrid<2>>(state, false);
+}
+void shaken_triangulation(benchmark::State& state) {
+  step<Triangulated>(state, true);
+}
+void shaken_cells(benchmark::State& state) {
+  step<CellGrid<2>>(state, true);
 }
 
-BENCHMARK(settled_triangulation)->Apply(scenes);
-BENCHMARK(settled_cells)->Apply(scenes);
-BENCHMARK(shaken_triangulation)->Apply(scenes);
-BENCHMARK(shaken_cells)->Apply(scenes);
+void sizes(benchmark::internal::Benchmark* b) {
+  b->Arg(1000)->Arg(10000)->Arg(100000)->Unit(benchmark::kMillisecond);
+}
+constexpr int kSettledSamples = 20;
+const int kShakenSamples = steps_per_shake() / kStepsPerSample;  // one period
+
+BENCHMARK(settled_triangulation)->Apply(sizes)->Iterations(kSettledSamples);
+BENCHMARK(settled_cells)->Apply(sizes)->Iterations(kSettledSamples);
+BENCHMARK(shaken_triangulation)->Apply(sizes)->Iterations(kShakenSamples);
+BENCHMARK(shaken_cells)->Apply(sizes)->Iterations(kShakenSamples);
 
 }  // namespace
