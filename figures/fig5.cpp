@@ -68,7 +68,7 @@ Colour layer_colour(int layer) {
 
 Box world_window(const Run<2>& run) {
   const double width = run.walls()[2].point.x();
-  return {{-0.02 * width, -0.02 * width}, {1.02 * width, 0.56 * width}};
+  return {{-0.02 * width, -0.02 * width}, {1.02 * width, 0.61 * width}};
 }
 
 void add_box_walls(DisplayList& list, const Panel& panel, const Run<2>& run, double top) {
@@ -90,7 +90,7 @@ void add_layers(DisplayList& list, const Panel& panel, const Run<2>& run, const 
     if (rock) disc.outline = {style::kInk, style::kMedium};
     list.add(disc);
   }
-  add_box_walls(list, panel, run, 0.54 * run.walls()[2].point.x());
+  add_box_walls(list, panel, run, 0.59 * run.walls()[2].point.x());
   list.add(PopClip{});
 }
 
@@ -126,7 +126,7 @@ void add_forces(DisplayList& list, const Panel& panel, const Run<2>& run, const 
     const double width = kWidest * std::min(c.force.norm() / ceiling, 1.0);
     list.add(Segment{panel.point(from), panel.point(to), {style::kContact, width}});
   }
-  add_box_walls(list, panel, run, 0.54 * run.walls()[2].point.x());
+  add_box_walls(list, panel, run, 0.59 * run.walls()[2].point.x());
   list.add(PopClip{});
 }
 
@@ -241,12 +241,12 @@ class Recorder {
   }
 
   void add_frame() {
-    DisplayList list{.width = 640, .height = 366};
-    const Panel panel({{4, 4}, {636, 350}}, world_window(run_));
+    DisplayList list{.width = 640, .height = 400};
+    const Panel panel({{4, 4}, {636, 384}}, world_window(run_));
     add_layers(list, panel, run_, record_, {run_.time(), run_.positions()});
     const double ms = 1000 * (run_.time() - record_.impact);
     list.add(Label{.text = "$t = " + std::to_string(std::lround(ms)) + "$ ms",
-                   .at = {14, 346},
+                   .at = {14, 392},
                    .size = 14,
                    .along = Along::top});
     video_.add(paint_rgba(list, 144, Quality::frame));
