@@ -29,6 +29,7 @@ namespace {
 constexpr int kLayers = 8;
 constexpr double kImpactWindow = 0.6;  // of the strip and the plots, after the impact [s]
 constexpr double kFrameEvery = 0.004;  // simulated time between video frames [s]
+constexpr double kWallHeight = 0.59;   // drawn, of the width of the bed
 constexpr double kPercentile = 0.999;  // of the forces: stronger ones are drawn no thicker
 
 struct Snapshot {
@@ -68,7 +69,7 @@ Colour layer_colour(int layer) {
 
 Box world_window(const Run<2>& run) {
   const double width = run.walls()[2].point.x();
-  return {{-0.02 * width, -0.02 * width}, {1.02 * width, 0.61 * width}};
+  return {{-0.02 * width, -0.02 * width}, {1.02 * width, (kWallHeight + 0.02) * width}};
 }
 
 void add_box_walls(DisplayList& list, const Panel& panel, const Run<2>& run, double top) {
@@ -90,7 +91,7 @@ void add_layers(DisplayList& list, const Panel& panel, const Run<2>& run, const 
     if (rock) disc.outline = {style::kInk, style::kMedium};
     list.add(disc);
   }
-  add_box_walls(list, panel, run, 0.59 * run.walls()[2].point.x());
+  add_box_walls(list, panel, run, kWallHeight * run.walls()[2].point.x());
   list.add(PopClip{});
 }
 
@@ -126,7 +127,7 @@ void add_forces(DisplayList& list, const Panel& panel, const Run<2>& run, const 
     const double width = kWidest * std::min(c.force.norm() / ceiling, 1.0);
     list.add(Segment{panel.point(from), panel.point(to), {style::kContact, width}});
   }
-  add_box_walls(list, panel, run, 0.59 * run.walls()[2].point.x());
+  add_box_walls(list, panel, run, kWallHeight * run.walls()[2].point.x());
   list.add(PopClip{});
 }
 
