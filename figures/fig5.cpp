@@ -105,8 +105,11 @@ double force_ceiling(const std::vector<ContactRecord<2>>& contacts) {
   return forces[static_cast<std::size_t>(at)];
 }
 
-/// Width of the strongest line [pt].
-constexpr double kWidest = 4;
+/// Width of the strongest line [pt]: so many mean grain diameters that chains stand out and the
+/// grains between them stay visible.
+double widest_line(const Panel& panel, const Run<2>& run) {
+  return 1.5 * panel.length(2 * run.radii().mean());
+}
 
 void add_forces(DisplayList& list, const Panel& panel, const Run<2>& run, const Record& record) {
   list.add(PushClip{panel.box()});
@@ -120,11 +123,12 @@ void add_forces(DisplayList& list, const Panel& panel, const Run<2>& run, const 
     return a.force.squaredNorm() < b.force.squaredNorm();
   });
   const double ceiling = force_ceiling(contacts);
+  const double widest = widest_line(panel, run);
   for (const ContactRecord<2>& c : contacts) {
     const Vec<2> from = record.peak.position.col(c.i);
     const Vec<2> to = c.j >= 0 ? Vec<2>(record.peak.position.col(c.j))
                                : Vec<2>(from - (run.radii()[c.i] - c.overlap) * c.normal);
-    const double width = kWidest * std::min(c.force.norm() / ceiling, 1.0);
+    const double width = widest * std::min(c.force.norm() / ceiling, 1.0);
     list.add(Segment{panel.point(from), panel.point(to), {style::kContact, width}});
   }
   add_box_walls(list, panel, run, kWallHeight * run.walls()[2].point.x());
@@ -345,7 +349,7 @@ DisplayList page(const Run<2>& run, const Record& record) {
   const double ceiling = force_ceiling(record.peak_contacts);
   std::vector<double> legend = legend_forces(1e-3 * ceiling);
   add_width_legend(list, {right.low[0] + 12, right.high[1] - 16}, legend,
-                   kWidest / (1e-3 * ceiling), "kN");
+                   widest_line(force_panel, run) / (1e-3 * ceiling), "kN");
   add_scale_bar(list, {left.low[0] + 12, left.high[1] - 14}, final_panel, 1, "1 m");
 
   y -= 30 + strip_height;
@@ -379,7 +383,8 @@ DisplayList large_panel(const Run<2>& run, const Record& record, bool forces) {
   if (forces) {
     add_forces(list, panel, run, record);
     const double ceiling = 1e-3 * force_ceiling(record.peak_contacts);
-    add_width_legend(list, {24, height - 22}, legend_forces(ceiling), kWidest / ceiling, "kN");
+    add_width_legend(list, {24, height - 22}, legend_forces(ceiling),
+                     widest_line(panel, run) / ceiling, "kN");
   } else {
     add_layers(list, panel, run, record, record.strip.back());
     add_scale_bar(list, {24, height - 20}, panel, 1, "1 m");
