@@ -194,8 +194,8 @@ class TriangulationNeighbourhood {
     }
   }
 
-  /// Every pair that T may lack has an end that lies on a failed edge or is hidden (THEORY of the
-  /// certificate, README): look at all grains around exactly these.
+  /// Every pair that T may lack has an end that lies on a failed edge or is hidden: look at all
+  /// grains around exactly these.
   void search_around_uncertain(const Columns<Dim>& x, const Eigen::VectorXd& radius,
                                const Eigen::VectorXd& margin, std::vector<Pair>& pairs) {
     cost_.searched += static_cast<std::int64_t>(uncertain_.size());
