@@ -188,8 +188,7 @@ FigureResult draw_figure3(const FigureOptions& options) {
       fixed(overlap_share(figure.below.discs, {0, 2}), 5) + ": contact 0-1 is found. (c) By " +
       fixed(overlap_share(figure.above.discs, {0, 2}), 5) +
       ": 0-1 and 2-3 both touch, but only one of them can be an edge, and 0-1 is missed. Squares: "
-      "the "
-      "middle, " +
+      "the middle, " +
       number(kZoomed) + " wide.";
   result.comparisons = {
       {"overlaps in practice", "about 1 % of the grains' size",

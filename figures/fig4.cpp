@@ -349,15 +349,12 @@ FigureResult draw_figure4(const FigureOptions& options) {
   result.caption =
       std::to_string(kCount) +
       " discs that fly and collide elastically in a box. (a) The discs and their regular "
-      "triangulation "
-      "T; arrows: the move that follows. (b) After the move, the edges of (a): one contact lies on "
-      "no "
-      "edge (ring) and would be missed. (c) T moved with the discs: one edge has disappeared, the "
-      "one "
-      "that appeared carries the contact. Seed and move were searched: the first seed, and in it "
-      "the "
-      "longest move, that exchange exactly one edge while another contact stays found. Video: T "
-      "maintained, " +
+      "triangulation T; arrows: the move that follows. (b) After the move, the edges of (a): one "
+      "contact lies on no edge (ring) and would be missed. (c) T moved with the discs: one edge "
+      "has disappeared, the one that appeared carries the contact. Chosen by search: the first "
+      "seed, and in it the longest move of at least half the mean radius, that exchanges exactly "
+      "one edge for one that crosses it clearly and carries a contact, while another contact stays "
+      "found. Video: T maintained, " +
       std::to_string(last.flips) + " flips in " + number(last.time, 3) + " s; " +
       std::to_string(last.contacts) + " collisions, of which T misses " +
       std::to_string(last.missed) + " and T of time 0 would miss " +
@@ -374,7 +371,7 @@ FigureResult draw_figure4(const FigureOptions& options) {
       {"move", "from " + fixed(1e3 * figure.before_time, 0) + " to " +
                    fixed(1e3 * figure.after_time, 0) + " ms; mean " + number(figure.mean_move, 2) +
                    " of the mean radius"},
-      {"that move", std::to_string(figure.update.flips) + " flips, " +
+      {"that move", std::to_string(figure.update.flips) + " flip(s), " +
                         std::to_string(figure.update.extracted + figure.update.unstuck) +
                         " sites taken out and put back"},
       {"largest overlap in the video",

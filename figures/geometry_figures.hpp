@@ -61,8 +61,9 @@ struct Figure4 {
   UpdateReport update;   ///< what the move cost
   double mean_move = 0;  ///< over the mean radius [-]
 };
-/// Takes the first seed, and in it the longest move, such that T changes by exactly one edge for
-/// another, and the new edge carries a contact that is on no old edge.
+/// Takes the first seed, and in it the longest move of at least half a mean radius, such that T
+/// changes by exactly one edge for another, which crosses it clearly and carries a contact that is
+/// on no old edge, while another contact stays found.
 Figure4 make_figure4();
 DisplayList picture_of(const Figure4& figure);
 
