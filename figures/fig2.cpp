@@ -186,7 +186,8 @@ FigureResult draw_figure2(const FigureOptions& options) {
   result.caption =
       "(a) Discs, their Laguerre cells and the edges of the regular triangulation, which joins "
       "discs whose cells share a border. The power of x to S1 is the square of the tangent's "
-      "length. The weight of a disc is the square of its radius. (b) Discs 0 and 1 (r = 10) overlap by 0.02; "
+      "length. The weight of a disc is the square of its radius. (b) Discs 0 and 1 (r = 10) "
+      "overlap by 0.02; "
       "discs 2 and 3 have r = 1. With weight r^2 the edge 0-1 is there, and the contact is found. "
       "(c) The same discs with weight r^(1/2), as Theorem 2.1 of the paper has it by a slip: the "
       "edge is 2-3, and the contact is missed. Squares: the middle, 0.1 wide.";

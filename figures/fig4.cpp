@@ -371,7 +371,7 @@ FigureResult draw_figure4(const FigureOptions& options) {
       {"move", "from " + fixed(1e3 * figure.before_time, 0) + " to " +
                    fixed(1e3 * figure.after_time, 0) + " ms; mean " + number(figure.mean_move, 2) +
                    " of the mean radius"},
-      {"that move", std::to_string(figure.update.flips) + " flip(s), " +
+      {"that move", std::to_string(figure.update.flips) + " flips, " +
                         std::to_string(figure.update.extracted + figure.update.unstuck) +
                         " sites taken out and put back"},
       {"largest overlap in the video",
