@@ -1,7 +1,6 @@
 #include <lagrain/predicates2.hpp>
 
-#include <CGAL/Gmpzf.h>
-#include <CGAL/Interval_nt.h>
+#include "exact_sign.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,8 +9,7 @@ namespace lagrain::detail {
 
 namespace {
 
-/// Each formula once, for any number type: intervals decide most of what the filter leaves (exact
-/// lattices among it, whose intervals are points), exact multiprecision floats the rest.
+// Each formula once, for any number type; see exact_sign.
 struct Orientation {
   template <class T>
   static T of(const Site2& a, const Site2& b, const Site2& c) {
@@ -45,20 +43,6 @@ struct PowerSideOnLine {
     return lifted(a, ax, ay, d) * (along_x ? bx : by) - lifted(b, bx, by, d) * (along_x ? ax : ay);
   }
 };
-
-template <class Formula, class... Sites>
-int exact_sign(const Sites&... sites) {
-  {
-    const CGAL::Interval_nt_advanced::Protector round_upwards;
-    const auto sign = CGAL::sign(Formula::template of<CGAL::Interval_nt_advanced>(sites...));
-    if (CGAL::is_certain(sign)) return static_cast<int>(CGAL::get_certain(sign));
-  }
-  return static_cast<int>(CGAL::sign(Formula::template of<CGAL::Gmpzf>(sites...)));
-}
-
-int compare(double a, double b) {
-  return (a > b) - (a < b);
-}
 
 }  // namespace
 

@@ -1,0 +1,340 @@
+#include <lagrain/triangulation3.hpp>
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Spatial_sort_traits_adapter_3.h>
+#include <CGAL/property_map.h>
+#include <CGAL/spatial_sort.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace lagrain {
+
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using KeyedPoint = std::pair<Kernel::Point_3, int>;
+using SortTraits =
+    CGAL::Spatial_sort_traits_adapter_3<Kernel, CGAL::First_of_pair_property_map<KeyedPoint>>;
+
+/// Sites near each other in space come near each other in the order, and rounds of it double in
+/// size, so that no arrangement of sites is a bad case.
+void sort_spatially(std::vector<int>& ids, const std::vector<Site3>& sites) {
+  std::vector<KeyedPoint> points;
+  points.reserve(ids.size());
+  for (const int id : ids) {
+    const Site3& s = sites[static_cast<std::size_t>(id)];
+    points.emplace_back(Kernel::Point_3(s.x, s.y, s.z), id);
+  }
+  CGAL::spatial_sort(points.begin(), points.end(), SortTraits());
+  for (std::size_t k = 0; k < ids.size(); ++k) ids[k] = points[k].second;
+}
+
+bool same_place(const Site3& a, const Site3& b) {
+  return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+/// The cyclic order of three numbers, beginning with the least.
+std::array<int, 3> least_first(int a, int b, int c) {
+  if (a < b && a < c) return {a, b, c};
+  if (b < c) return {b, c, a};
+  return {c, a, b};
+}
+
+}  // namespace
+
+// ---- Build -------------------------------------------------------------------------------------
+
+void Triangulation<3>::rebuild() {
+  std::vector<int> present;
+  present.reserve(index(present_));
+  for (int id = 0; id < size(); ++id) {
+    if (contains(id)) present.push_back(id);
+  }
+  if (present.size() > 64) sort_spatially(present, sites_);
+  topology_.clear(size() + 3);
+  topology_.reserve_cells(7 * present.size());
+  hidden_.clear();
+  insert_all(present, nullptr);
+  choose_middle();
+  std::sort(hidden_.begin(), hidden_.end());
+}
+
+/// Builds from nothing by inserting the sites of `order`, one after the other. An insertion into a
+/// regular triangulation always succeeds, and ties are ours from the first on.
+/// @param away  auxiliary sites keep to the other side of a plane of sites than this one
+void Triangulation<3>::insert_all(std::span<const int> order, const Site3* away) {
+  const auto at = [&](int id) -> const Site3& { return sites_[index(id)]; };
+  // The first sites that span a line, a plane, space.
+  Quad simplex{-1, -1, -1, -1};
+  dimension_ = -1;
+  for (const int id : order) {
+    if (dimension_ == 3) break;
+    const bool raises =
+        dimension_ == -1  ? true
+        : dimension_ == 0 ? !same_place(at(simplex[0]), at(id))
+        : dimension_ == 1
+            ? !detail::collinear(at(simplex[0]), at(simplex[1]), at(id))
+            : orientation(at(simplex[0]), at(simplex[1]), at(simplex[2]), at(id)) != 0;
+    if (raises) simplex[index(++dimension_)] = id;
+  }
+  edges_known_ = false;
+  if (dimension_ < 0) return;
+  if (dimension_ < 3) place_auxiliaries(simplex, away);
+  if (orientation(at(simplex[0]), at(simplex[1]), at(simplex[2]), at(simplex[3])) < 0) {
+    std::swap(simplex[0], simplex[1]);
+  }
+  first_simplex(simplex);
+  last_ = simplex[0];
+  for (const int id : order) {
+    if (std::find(simplex.begin(), simplex.end(), id) != simplex.end()) continue;
+    topology_.set_corner_of(id, -2 - last_);
+    if (!insert_visible(id)) hidden_.push_back(id);
+  }
+}
+
+/// Completes a simplex of dimension_ + 1 sites by auxiliary ones, each displaced from the first
+/// along an axis. Every axis along which the sites so far extend least stays out of their span.
+void Triangulation<3>::place_auxiliaries(Quad& simplex, const Site3* away) {
+  const auto at = [&](int k) -> Site3& { return sites_[index(simplex[index(k)])]; };
+  const auto spans_space = [&] { return orientation(at(0), at(1), at(2), at(3)) != 0; };
+  double size = 1;
+  for (int k = 0; k <= dimension_; ++k) {
+    size = std::max({size, std::abs(at(k).x), std::abs(at(k).y), std::abs(at(k).z)});
+  }
+  const int missing = 3 - dimension_;
+  // One of the three choices of axes spans space: exactly, as no digit of a displacement by `size`
+  // is lost.
+  for (int skipped = 0; skipped < 3; ++skipped) {
+    int axis = missing == 1 ? skipped : missing == 2 ? (skipped + 1) % 3 : 0;
+    for (int k = dimension_ + 1; k <= 3; ++k, axis = (axis + 1) % 3) {
+      simplex[index(k)] = size_ + k - dimension_ - 1;
+      Site3& auxiliary = at(k);
+      auxiliary = at(0);
+      (axis == 0 ? auxiliary.x : axis == 1 ? auxiliary.y : auxiliary.z) += 2 * size;
+      auxiliary.w = 0;
+    }
+    if (spans_space()) break;
+  }
+  if (away != nullptr && missing == 1 &&
+      orientation(at(0), at(1), at(2), at(3)) == orientation(at(0), at(1), at(2), *away)) {
+    Site3& auxiliary = at(3);
+    auxiliary.x += 2 * (at(0).x - auxiliary.x);
+    auxiliary.y += 2 * (at(0).y - auxiliary.y);
+    auxiliary.z += 2 * (at(0).z - auxiliary.z);
+  }
+}
+
+/// One tetrahedron and the four infinite ones round it.
+void Triangulation<3>::first_simplex(const Quad& simplex) {
+  topology_.add(simplex);
+  for (int i = 0; i < 4; ++i) {
+    Quad beyond = simplex;
+    beyond[index(i)] = Topology3::kInfinite;
+    // Seen from the other side of the facet.
+    const auto& f = Topology3::kFacet[i];
+    std::swap(beyond[index(f[0])], beyond[index(f[1])]);
+    topology_.link(i, topology_.corner_at(topology_.add(beyond), Topology3::kInfinite));
+  }
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < i; ++j) {
+      topology_.link(topology_.corner_at(1 + i, simplex[index(j)]),
+                     topology_.corner_at(1 + j, simplex[index(i)]));
+    }
+  }
+}
+
+// ---- Putting in --------------------------------------------------------------------------------
+
+/// Notes that a present site has no cell of its own; `hint` is a visible site near it. A hint that
+/// is hidden later leads on to its own hint, and so on without a cycle.
+void Triangulation<3>::hide(int site, int hint) {
+  topology_.set_corner_of(site, -2 - hint);
+  hidden_.push_back(site);
+}
+
+/// Inserts a site that has no cell in place of the tetrahedra in conflict with it, and hides the
+/// sites among them. False, and a fresh hint, if the site is hidden itself.
+/// @pre T is regular
+bool Triangulation<3>::insert_visible(int site) {
+  const int start = locate(site, visible_from(site));
+  if (!topology_.infinite(start) && !conflict(start, site)) {
+    topology_.set_corner_of(site, -2 - topology_.vertex(4 * start));
+    return false;
+  }
+  topology_.clear_marks();
+  hole_.assign(1, start);
+  rim_.clear();
+  topology_.set_mark(start);
+  for (std::size_t k = 0; k < hole_.size(); ++k) {
+    for (int corner = 4 * hole_[k]; corner < 4 * hole_[k] + 4; ++corner) {
+      const int beyond = topology_.twin(corner) >> 2;
+      if (topology_.marked(beyond)) continue;
+      if (conflict(beyond, site)) {
+        topology_.set_mark(beyond);
+        hole_.push_back(beyond);
+      } else {
+        rim_.push_back(corner);
+      }
+    }
+  }
+  // Sites of the hole that are not on its rim.
+  const auto note = [&](int v, int value) {
+    if (v >= 0) site_note_[index(v)] = value;
+  };
+  cavity_sites_.clear();
+  for (const int cell : hole_) {
+    for (const int v : topology_.vertices(cell)) {
+      if (v < 0 || site_note_[index(v)] != 0) continue;
+      note(v, 1);
+      cavity_sites_.push_back(v);
+    }
+  }
+  for (const int corner : rim_) {
+    for (const int i : Topology3::kFacet[corner & 3]) note(topology_.vertex((corner & ~3) + i), 2);
+  }
+  topology_.fill_from(site, hole_, rim_);
+  for (const int v : cavity_sites_) {
+    if (site_note_[index(v)] == 1) hide(v, site);
+    note(v, 0);
+  }
+  last_ = site;
+  return true;
+}
+
+// ---- Cavities ----------------------------------------------------------------------------------
+
+/// Triangulates a cavity anew: the regular triangulation of `sites` alone replaces the cells of
+/// `hole` if it holds every facet of the hole's boundary. Sites without a cell then are hidden.
+///
+/// If T was regular but for the cells of the hole, T comes out regular; in particular a site whose
+/// star is the hole is taken out so.
+/// @param hole   a ball of cells
+/// @param sites  sites to be used, all of the boundary among them, in increasing order
+/// @param away   see insert_all
+/// @return       false if it cannot be done; T has not changed then
+bool Triangulation<3>::refill(std::span<const int> hole, std::span<const int> sites,
+                              const Site3* places, const Site3* away) {
+  if (!small_.held) small_.held = std::make_unique<Triangulation<3>>();
+  Triangulation<3>& small = *small_.held;
+  const auto count = static_cast<int>(sites.size());
+  small.size_ = small.present_ = count;
+  small.sites_.resize(index(count + 3));
+  small.site_note_.assign(index(count + 3), 0);
+  small.hidden_.clear();
+  small.topology_.clear(count + 3);
+  pending_.resize(index(count));
+  for (int k = 0; k < count; ++k) {
+    small.sites_[index(k)] = places[sites[index(k)]];
+    pending_[index(k)] = k;
+    site_note_[index(sites[index(k)])] = k;
+  }
+  small.insert_all(pending_, away);
+
+  topology_.clear_marks();
+  for (const int cell : hole) topology_.set_mark(cell);
+  const auto small_id = [&](int v) { return v < 0 ? v : site_note_[index(v)]; };
+  facets_.clear();
+  for (const int cell : hole) {
+    for (int corner = 4 * cell; corner < 4 * cell + 4; ++corner) {
+      if (topology_.marked(topology_.twin(corner) >> 2)) continue;
+      const auto& f = Topology3::kFacet[corner & 3];
+      facets_.push_back({least_first(small_id(topology_.vertex(4 * cell + f[0])),
+                                     small_id(topology_.vertex(4 * cell + f[1])),
+                                     small_id(topology_.vertex(4 * cell + f[2]))),
+                         topology_.twin(corner), Topology3::kNone});
+    }
+  }
+  for (const int id : sites) site_note_[index(id)] = 0;
+  if (small.dimension_ < (away != nullptr ? 2 : 3)) return false;
+
+  // Find the boundary in the small triangulation.
+  std::size_t slots = 16;
+  while (slots < 4 * facets_.size()) slots *= 2;
+  facet_table_.assign(slots, -1);
+  const auto slot_of = [&](const std::array<int, 3>& key) {
+    std::size_t slot = (static_cast<std::size_t>(key[0] + 1) * 73856093U ^
+                        static_cast<std::size_t>(key[1] + 1) * 19349663U ^
+                        static_cast<std::size_t>(key[2] + 1) * 83492791U) &
+                       (slots - 1);
+    while (facet_table_[slot] >= 0 && facets_[index(facet_table_[slot])].sites != key) {
+      slot = (slot + 1) & (slots - 1);
+    }
+    return slot;
+  };
+  for (std::size_t k = 0; k < facets_.size(); ++k) {
+    facet_table_[slot_of(facets_[k].sites)] = static_cast<int>(k);
+  }
+  std::size_t found = 0;
+  inside_.clear();
+  small.topology_.clear_marks();
+  for (int cell = 0; cell < small.topology_.slots(); ++cell) {
+    if (!small.topology_.alive(cell)) continue;
+    for (int i = 0; i < 4; ++i) {
+      const auto& f = Topology3::kFacet[i];
+      const auto& v = small.topology_.vertices(cell);
+      const int entry =
+          facet_table_[slot_of(least_first(v[index(f[0])], v[index(f[1])], v[index(f[2])]))];
+      if (entry < 0) continue;
+      facets_[index(entry)].inside = 4 * cell + i;
+      small.topology_.exchange_flag(4 * cell + i, true);
+      ++found;
+      if (!small.topology_.marked(cell)) {
+        small.topology_.set_mark(cell);
+        inside_.push_back(cell);
+      }
+    }
+  }
+  if (found != facets_.size()) return false;
+  for (std::size_t k = 0; k < inside_.size(); ++k) {
+    for (int i = 0; i < 4; ++i) {
+      if (small.topology_.vertex(4 * inside_[k] + i) >= count) return false;  // auxiliary
+      if (small.topology_.exchange_flag(4 * inside_[k] + i, false)) continue;
+      const int beyond = small.topology_.twin(4 * inside_[k] + i) >> 2;
+      if (small.topology_.marked(beyond)) continue;
+      small.topology_.set_mark(beyond);
+      inside_.push_back(beyond);
+    }
+  }
+
+  // Copy the inside.
+  for (const int cell : hole) {
+    if (topology_.infinite(cell)) hull_touched_ = true;
+    topology_.release(cell);
+  }
+  pending_.assign(index(small.topology_.slots()), -1);  // small cell -> cell
+  for (const int cell : inside_) {
+    Quad quad = small.topology_.vertices(cell);
+    for (int& v : quad) v = v < 0 ? v : sites[index(v)];
+    pending_[index(cell)] = topology_.add(quad);
+    touched_.push_back(pending_[index(cell)]);
+    if (topology_.infinite(touched_.back())) hull_touched_ = true;
+  }
+  for (const int cell : inside_) {
+    for (int i = 0; i < 4; ++i) {
+      const int twin = small.topology_.twin(4 * cell + i);
+      const int beyond = pending_[index(twin >> 2)];
+      if (beyond >= 0) topology_.link(4 * pending_[index(cell)] + i, 4 * beyond + (twin & 3));
+    }
+  }
+  for (const CavityFacet& facet : facets_) {
+    topology_.link(4 * pending_[index(facet.inside >> 2)] + (facet.inside & 3), facet.outside);
+  }
+  for (const int k : small.hidden_) hide(sites[index(k)], sites[index(facets_[0].sites[2])]);
+  edges_known_ = false;
+  return true;
+}
+
+/// Takes a visible site out; T must be regular at `places`. The caller notes what becomes of it.
+/// @return false if the rest would be flat, or T is not regular; T has not changed then
+bool Triangulation<3>::take_out(int site, const Site3* places) {
+  topology_.star(site, cavity_);
+  cavity_sites_.clear();
+  collect_vertices(cavity_, cavity_sites_);
+  std::erase(cavity_sites_, site);
+  for (int& corner : cavity_) corner >>= 2;
+  return refill(cavity_, cavity_sites_, places, &places[site]);
+}
+
+}  // namespace lagrain
