@@ -71,9 +71,8 @@ UpdateReport Triangulation<3>::move(std::span<const int> moved, const Columns<3>
   if (tiny()) {
     rebuild();
   } else {
-    // Many stars overlap and lie scattered in memory; then one sweep over all cells is cheaper.
-    const bool sweep = moved_.size() > index(size_) / 8;
-    if (extract_inverted(moved_, sweep) && flip_to_regular(moved_, sweep)) {
+    collect_around(moved_);
+    if (extract_inverted() && flip_to_regular()) {
       try_hidden();
     } else {
       ++report_.rebuilds;

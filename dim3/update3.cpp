@@ -342,8 +342,7 @@ bool Triangulation<3>::refill_around(int corner) {
       topology_.star(site, star_);
       for (const int at : star_) cavity.push_back(at & ~3);
     }
-    std::sort(cavity.begin(), cavity.end());
-    cavity.erase(std::unique(cavity.begin(), cavity.end()), cavity.end());
+    sort_unique(cavity);
     if (cavity.size() > index(topology_.slots()) / 2) return false;
     sites.clear();
     collect_vertices(cavity, sites);
@@ -362,29 +361,22 @@ bool Triangulation<3>::refill_around(int corner) {
   return false;
 }
 
-bool Triangulation<3>::flip_to_regular(std::span<const int> moved, bool sweep) {
+/// Flips until T is regular, given that it is so but for the facets of the cells in around_ and
+/// touched_.
+bool Triangulation<3>::flip_to_regular() {
   queue_.clear();
   stuck_.clear();
   budget_ = 64 * static_cast<std::int64_t>(topology_.slots()) + 10000;
-  if (sweep) {
-    for (int t = 0; t < topology_.slots(); ++t) {
-      if (!topology_.alive(t)) continue;
-      for (int corner = 4 * t; corner < 4 * t + 4; ++corner) {
-        if (topology_.twin(corner) < corner || locally_regular(corner)) continue;
-        push(corner);
-        if (!drain()) return false;
-        if (!topology_.alive(t)) break;
-      }
-    }
-  } else {
-    pending_ = touched_;  // flips add to it
-    for (const int cell : pending_) {
-      if (topology_.alive(cell)) push_cell(cell);
-    }
-    for (const int site : moved) {
-      if (topology_.corner_of(site) < 0) continue;
-      topology_.star(site, star_);
-      for (const int at : star_) push_cell(at >> 2);
+  around_.insert(around_.end(), touched_.begin(), touched_.end());
+  topology_.clear_marks();
+  for (const int cell : around_) topology_.set_mark(cell);
+  for (const int cell : around_) {
+    for (int corner = 4 * cell; corner < 4 * cell + 4; ++corner) {
+      if (!topology_.alive(cell)) break;
+      // Two cells of the list see their facet once; flips see to the facets of what they make.
+      const int twin = topology_.twin(corner);
+      if ((twin < corner && topology_.marked(twin >> 2)) || locally_regular(corner)) continue;
+      push(corner);
       if (!drain()) return false;
     }
   }
@@ -419,34 +411,48 @@ void Triangulation<3>::undo_flips() {
   }
 }
 
+void Triangulation<3>::sort_unique(std::vector<int>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+/// Lists the cells with a moved vertex in around_, in increasing order.
+void Triangulation<3>::collect_around(std::span<const int> moved) {
+  around_.clear();
+  if (moved.size() > index(size_) / 32) {
+    // Stars overlap and lie scattered in memory: one pass over all cells is cheaper.
+    for (const int site : moved) site_note_[index(site)] = 1;
+    for (int t = 0; t < topology_.slots(); ++t) {
+      const Quad& v = topology_.vertices(t);
+      if (std::any_of(v.begin(), v.end(),
+                      [&](int id) { return id >= 0 && site_note_[index(id)]; })) {
+        around_.push_back(t);
+      }
+    }
+    for (const int site : moved) site_note_[index(site)] = 0;
+    return;
+  }
+  for (const int site : moved) {
+    if (topology_.corner_of(site) < 0) continue;
+    topology_.star(site, star_);
+    for (const int at : star_) around_.push_back(at >> 2);
+  }
+  sort_unique(around_);
+}
+
 /// Flips inverted tetrahedra away; where that fails, takes moved sites out, at their old places,
 /// until it does not.
 /// @return false if too many would have to go
-bool Triangulation<3>::extract_inverted(std::span<const int> moved, bool sweep) {
+bool Triangulation<3>::extract_inverted() {
   touched_.clear();
   inverted_.clear();
-  hull_touched_ = sweep;
+  hull_touched_ = false;
   const auto look = [&](int cell) {
-    if (topology_.alive(cell) && !positive(cell)) inverted_.push_back(cell);
+    if (!positive(cell)) inverted_.push_back(cell);
   };
-  const auto sort_unique = [](std::vector<int>& list) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  };
-  if (sweep) {
-    for (int t = 0; t < topology_.slots(); ++t) look(t);
-  } else {
-    pending_.clear();
-    for (const int site : moved) {
-      if (topology_.corner_of(site) < 0) continue;
-      topology_.star(site, star_);
-      for (const int at : star_) pending_.push_back(at >> 2);
-    }
-    sort_unique(pending_);
-    for (const int cell : pending_) {
-      hull_touched_ = hull_touched_ || topology_.infinite(cell);
-      look(cell);
-    }
+  for (const int cell : around_) {
+    hull_touched_ = hull_touched_ || topology_.infinite(cell);
+    look(cell);
   }
   if (std::any_of(inverted_.begin(), inverted_.end(),
                   [&](int cell) { return topology_.infinite(cell); })) {

@@ -214,8 +214,10 @@ class Triangulation<3> {
   bool drain();
   bool settle();
   bool refill_around(int corner);
-  bool flip_to_regular(std::span<const int> moved, bool sweep);
-  bool extract_inverted(std::span<const int> moved, bool sweep);
+  bool flip_to_regular();
+  static void sort_unique(std::vector<int>& list);
+  void collect_around(std::span<const int> moved);
+  bool extract_inverted();
   void choose_cover(std::span<const int> cells);
   void try_hidden();
   UpdateReport finish();
@@ -241,7 +243,7 @@ class Triangulation<3> {
   std::vector<int> site_note_;  // by id, zero between uses
   std::vector<Flip> log_;
   std::vector<int> queue_, stuck_;  // facets to be looked at, facets that would not flip
-  std::vector<int> moved_, inverted_, unresolved_, cover_, touched_;
+  std::vector<int> moved_, around_, inverted_, unresolved_, cover_, touched_;
   std::vector<int> hole_, rim_, cavity_, cavity_sites_, inside_, pending_;
   std::vector<CavityFacet> facets_;
   std::vector<int> facet_table_;

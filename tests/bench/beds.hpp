@@ -1,6 +1,7 @@
 #pragma once
 /// @file
-/// Beds of discs for the benchmark: settled, and shaken.
+/// Beds of grains for the benchmark: discs and spheres, of like and of unlike sizes, settled and
+/// shaken.
 
 #include <lagrain/cundall_strack.hpp>
 #include <lagrain/grains.hpp>
@@ -8,108 +9,175 @@
 #include <lagrain/observe.hpp>
 #include <lagrain/random.hpp>
 #include <lagrain/simulation.hpp>
+#include <lagrain/triangulation_neighbourhood.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <map>
 #include <numbers>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 namespace lagrain::bench {
 
 using Law = CundallStrack<LinearSpring>;
-template <class N>
-using Bed = Simulation<2, Law, VelocityVerlet<2>, N>;
+template <int Dim, class N>
+using Bed = Simulation<Dim, Law, VelocityVerlet<Dim>, N>;
 
-/// Units: largest radius 1 m, gravity 1 m/s^2, density such that a disc of radius 1 weighs 1 N.
-/// A bed 40 layers deep presses its lowest contacts by about 1 % of a radius.
+/// Radii [m]: all 1; uniform in [1/2, 1]; half of the volume 1 and half 1/10.
+enum class Sizes { equal, spread, mixed };
+
+inline double smallest_radius(Sizes sizes) {
+  return sizes == Sizes::equal ? 1 : sizes == Sizes::spread ? 0.5 : 0.1;
+}
+
+/// Units: largest radius 1 m, gravity 1 m/s^2, density such that a grain of radius 1 weighs 1 N. A
+/// bed 40 layers deep presses its lowest contacts by about 1 % of a radius. Stiffness follows the
+/// smaller radius of a pair, so that this holds for small grains too.
 inline constexpr double kStiffness = 4000;
 inline constexpr double kRestitution = 0.3;
-inline constexpr double kSmallest = 0.5;  // smallest radius
 
-inline Law bed_law() {
-  return {LinearSpring::with_restitution(kStiffness, kRestitution), 0.5, 2.0 / 7.0, 0.2};
+template <int Dim>
+double grain_mass(double radius) {
+  return std::pow(radius, Dim);
 }
 
-inline double disc_mass(double radius) {
-  return radius * radius;
+inline Law law_of(double radius) {
+  return {LinearSpring::with_restitution(kStiffness * radius, kRestitution), 0.5, 2.0 / 7.0, 0.2};
+}
+/// Kind 0 are large grains and walls, kind 1 the small ones of a mixture.
+inline LawTable<Law> bed_laws(Sizes sizes) {
+  LawTable<Law> laws(law_of(1), 2);
+  if (sizes == Sizes::mixed) {
+    laws.set(0, 1, law_of(smallest_radius(sizes)));
+    laws.set(1, 1, law_of(smallest_radius(sizes)));
+  }
+  return laws;
 }
 
-/// A bed is settled in a box of at most this many discs; larger ones are made of its copies, side
+template <int Dim>
+double bed_time_step(Sizes sizes) {
+  const double r = smallest_radius(sizes);
+  return law_of(sizes == Sizes::mixed ? r : 1).contact_time(grain_mass<Dim>(r) / 2, 0) / 25;
+}
+
+/// A bed is settled in a box of at most this many grains; larger ones are made of its copies, side
 /// by side, which come to rest soon after.
 inline constexpr int kTile = 2500;
-
-/// Width [m] of the box for n discs: 40 layers, or a square if there are few.
-inline double bed_width(int n) {
-  return n < kTile ? 2.0 * std::ceil(std::sqrt(static_cast<double>(n))) : n / 20.0;
-}
-
-inline std::vector<Wall<2>> open_box(double width) {
-  return {Wall<2>::half_space("floor", {0, 0}, {0, 1}), Wall<2>::half_space("left", {0, 0}, {1, 0}),
-          Wall<2>::half_space("right", {width, 0}, {-1, 0})};
-}
-
-inline double bed_time_step() {
-  return bed_law().contact_time(disc_mass(kSmallest) / 2, 0) / 25;
-}
 
 /// The box is shaken up and down by one radius, with 4 times gravity.
 inline constexpr double kAmplitude = 1;
 inline double shake_frequency() {
   return std::sqrt(4 / kAmplitude) / (2 * std::numbers::pi);
 }
-inline int steps_per_shake() {
-  return static_cast<int>(1 / (shake_frequency() * bed_time_step()));
+template <int Dim>
+int steps_per_shake(Sizes sizes) {
+  return static_cast<int>(1 / (shake_frequency() * bed_time_step<Dim>(sizes)));
 }
 
-/// Fall from a loose lattice until nearly at rest: n discs, radii uniform in [1/2, 1].
-template <class N>
-std::vector<Grain<2>> settle(int n) {
+template <int Dim>
+struct Tile {
+  std::vector<Grain<Dim>> grains;
+  double width;  ///< along x, and in space along y [m]
+};
+
+/// A box without a lid, `length` along x and `width` across.
+template <int Dim>
+std::vector<Wall<Dim>> open_box(double length, double width) {
+  std::vector<Wall<Dim>> walls;
+  const Vec<Dim> origin = Vec<Dim>::Zero();
+  const auto up = Vec<Dim>::Unit(Dim - 1);
+  walls.push_back(Wall<Dim>::half_space("floor", origin, up));
+  for (int axis = 0; axis < Dim - 1; ++axis) {
+    const Vec<Dim> across = Vec<Dim>::Unit(axis);
+    const Vec<Dim> far = (axis == 0 ? length : width) * across;
+    walls.push_back(Wall<Dim>::half_space("low " + std::to_string(axis), origin, across));
+    walls.push_back(Wall<Dim>::half_space("high " + std::to_string(axis), far, -across));
+  }
+  return walls;
+}
+
+template <int Dim, class N>
+Bed<Dim, N> make_bed(const std::vector<Grain<Dim>>& grains, std::vector<Wall<Dim>> walls,
+                     Sizes sizes) {
+  return Bed<Dim, N>(make_grains<Dim, Law::needs>(grains), bed_laws(sizes), std::move(walls),
+                     {-Vec<Dim>::Unit(Dim - 1), bed_time_step<Dim>(sizes)});
+}
+
+/// Falls from loose lattices, the larger grains lowest, until nearly at rest.
+template <int Dim>
+Tile<Dim> settle(int n, Sizes sizes) {
   Random random(static_cast<std::uint64_t>(n));
-  const double width = bed_width(n);
-  const int columns = static_cast<int>(width / 2.02);
-  std::vector<Grain<2>> grains;
+  const double small = smallest_radius(sizes);
+  // Half of the volume each: as many small grains per large one as go into its volume.
+  const int large =
+      sizes == Sizes::mixed ? std::max(1, static_cast<int>(n * std::pow(small, Dim))) : n;
+  std::vector<Grain<Dim>> grains;
+  double volume = 0;  // of the cubes round the grains
   for (int i = 0; i < n; ++i) {
-    Grain<2> grain;
-    grain.radius = random.uniform(kSmallest, 1);
-    grain.mass = disc_mass(grain.radius);
-    grain.position = {width / columns * (i % columns + 0.5) + random.uniform(-0.01, 0.01),
-                      2.02 * (i / columns) + 1.01};
+    Grain<Dim> grain;
+    grain.radius = i >= large ? small : sizes == Sizes::spread ? random.uniform(small, 1) : 1;
+    grain.mass = grain_mass<Dim>(grain.radius);
+    grain.kind = sizes == Sizes::mixed && i >= large ? 1 : 0;
+    volume += std::pow(2 * grain.radius, Dim);
     grains.push_back(grain);
   }
-  Bed<N> sim(make_grains<2, Law::needs>(grains), LawTable<Law>(bed_law()), open_box(width),
-             {{0, -1}, bed_time_step()});
-  const double quiet = 1e-5 * sim.grains().mass.sum();
-  while (sim.time() < 30 || kinetic_energy(sim.grains()) > quiet) {
-    for (int s = 0; s < 500; ++s) sim.step();
+  // In the plane 40 layers, unless there are few grains; in space as wide as deep.
+  const double side = 1.05 * std::pow(volume, 1.0 / Dim);
+  const double width = std::max(2.1, Dim == 2 && n >= kTile ? volume / 80 : side);
+
+  double floor = 0;
+  for (int first = 0; first < n;) {
+    const int end = first < large ? large : n;
+    const double cell = 2.02 * (first < large ? 1 : small);
+    const int across = static_cast<int>(width / cell);
+    for (int i = first; i < end; ++i) {
+      int rest = i - first;
+      Vec<Dim>& x = grains[static_cast<std::size_t>(i)].position;
+      for (int axis = 0; axis < Dim - 1; ++axis, rest /= across) {
+        x[axis] = width / across * (rest % across + 0.5) + 0.005 * cell * random.uniform(-1, 1);
+      }
+      x[Dim - 1] = floor + cell * (rest + 0.5);
+      if (i == end - 1) floor = x[Dim - 1] + cell / 2;
+    }
+    first = end;
+  }
+
+  auto bed =
+      make_bed<Dim, TriangulationNeighbourhood<Dim>>(grains, open_box<Dim>(width, width), sizes);
+  const double quiet = 1e-5 * bed.grains().mass.sum();
+  while (bed.time() < 30 || kinetic_energy(bed.grains()) > quiet) {
+    for (int s = 0; s < 500; ++s) bed.step();
   }
   for (int i = 0; i < n; ++i) {
-    grains[static_cast<std::size_t>(i)].position = sim.grains().position.col(i);
+    grains[static_cast<std::size_t>(i)].position = bed.grains().position.col(i);
   }
-  return grains;
+  return {grains, width};
 }
 
-/// A settled bed of n discs, shaken with 4 g if asked for.
+/// A settled bed of n grains, shaken with 4 g if asked for.
 /// @pre n < kTile, or a multiple of it
-template <class N>
-Bed<N> make_bed(int n, bool shaken) {
-  static std::map<int, std::vector<Grain<2>>> settled;
-  const int tile = std::min(n, kTile);
-  if (settled[tile].empty()) settled[tile] = settle<N>(tile);
+template <int Dim, class N>
+Bed<Dim, N> make_bed(int n, Sizes sizes, bool shaken) {
+  static std::map<std::pair<int, Sizes>, Tile<Dim>> settled;
+  const int count = std::min(n, kTile);
+  Tile<Dim>& tile = settled[{count, sizes}];
+  if (tile.grains.empty()) tile = settle<Dim>(count, sizes);
 
-  std::vector<Grain<2>> grains;
+  std::vector<Grain<Dim>> grains;
   for (int i = 0; i < n; ++i) {
-    grains.push_back(settled[tile][static_cast<std::size_t>(i % tile)]);
-    grains.back().position.x() += bed_width(tile) * (i / tile);
+    grains.push_back(tile.grains[static_cast<std::size_t>(i % count)]);
+    grains.back().position.x() += tile.width * (i / count);
   }
-  std::vector<Wall<2>> walls = open_box(bed_width(n));
+  std::vector<Wall<Dim>> walls = open_box<Dim>(tile.width * (n / count), tile.width);
   if (shaken) {
-    for (Wall<2>& wall : walls) wall.motion = Shake<2>{{0, kAmplitude}, shake_frequency()};
+    for (Wall<Dim>& wall : walls) {
+      wall.motion = Shake<Dim>{kAmplitude * Vec<Dim>::Unit(Dim - 1), shake_frequency()};
+    }
   }
-  return Bed<N>(make_grains<2, Law::needs>(grains), LawTable<Law>(bed_law()), std::move(walls),
-                {{0, -1}, bed_time_step()});
+  return make_bed<Dim, N>(grains, std::move(walls), sizes);
 }
 
 }  // namespace lagrain::bench
