@@ -276,13 +276,16 @@ class Placer {
       bool found = false;
       double smallest = std::numeric_limits<double>::infinity();
       Vec<Dim> least_bad = Vec<Dim>::Zero();
-      for (int attempt = 0; attempt < (full ? kTriesWhenFull : kTries) && !found; ++attempt) {
+      int overlapping = 0;  // a place behind a wall is no place
+      for (int attempt = 0; attempt < kTries && !found; ++attempt) {
+        if (full && overlapping == kTriesWhenFull) break;
         Vec<Dim> x;
         for (int d = 0; d < Dim; ++d) x[d] = random.uniform(f.low[d] + r, f.high[d] - r);
         if (!(((x - f.low).array() >= r).all() && ((f.high - x).array() >= r).all())) continue;
         found = free(x, r);
         if (found) add(grain_of(f, r, x, random), f.material, group);
         if (found || !clear_of_walls(x, r)) continue;
+        ++overlapping;
         const double overlap = largest_overlap(x, r);
         if (overlap < smallest) {
           smallest = overlap;

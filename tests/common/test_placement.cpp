@@ -244,6 +244,21 @@ TEST_SUITE("placement") {
     CHECK(nearest >= 0);
   }
 
+  TEST_CASE_TEMPLATE("a wall may take most of a region from the grains", S, Space<2>, Space<3>) {
+    constexpr int Dim = S::Dim;
+    auto scene = crowd<Dim>({{Dim == 2 ? 84 : 1900, 0.02}});
+    scene.walls = {Wall<Dim>::half_space("cliff", 0.85 * Vec<Dim>::UnitX(), Vec<Dim>::UnitX())};
+
+    const auto placed = place_grains(scene);
+
+    CHECK(smallest_gap(placed.grains) >= 0);
+    double nearest = 1;
+    for (const auto& grain : placed.grains) {
+      nearest = std::min(nearest, grain.position[0] - 0.85 - grain.radius);
+    }
+    CHECK(nearest >= 0);
+  }
+
   TEST_CASE("more grains than a region can hold are refused, with the fraction and the limit") {
     CHECK(refusal_of(crowd<3>({{2836, 0.04}})) ==
           "fill[0]: \"r = 0.04\": a solid fraction of 0.76 in its region; equal spheres reach at "
