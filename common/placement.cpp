@@ -1,5 +1,7 @@
 #include <lagrain/placement.hpp>
 
+#include "pushing.hpp"
+
 #include <lagrain/random.hpp>
 
 #include <algorithm>
@@ -7,7 +9,9 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <numeric>
+#include <string>
 #include <unordered_map>
 
 namespace lagrain {
@@ -17,6 +21,17 @@ namespace {
 constexpr double kSpacing = 1.02;
 /// Places tried for one grain before its region counts as full.
 constexpr int kTries = 2000;
+/// Then fewer are tried, and the least bad is taken.
+constexpr int kTriesWhenFull = 30;
+/// Steps of pushing after which a region counts as too small.
+constexpr int kPushes = 3000;
+
+/// Solid fraction of the densest packing of equal discs (Thue, Norske Vid. Selsk. Skr. 1 (1910) 1)
+/// or spheres (Hales, Ann. Math. 162 (2005) 1065), and about the densest at random [-].
+template <int Dim>
+constexpr double kDensest = Dim == 2 ? 0.9068996821171089 : 0.7404804896930610;
+template <int Dim>
+constexpr double kDensestRandom = Dim == 2 ? 0.84 : 0.64;
 
 /// Finds the grains near a place. Each grain is listed in every cell that its bounding box meets,
 /// so that any mixture of sizes works.
@@ -172,10 +187,13 @@ class Placer {
     placed_.group.push_back(group);
   }
 
+  bool clear_of_walls(const Vec<Dim>& x, double r) const {
+    return std::all_of(scene_.walls.begin(), scene_.walls.end(),
+                       [&](const Wall<Dim>& wall) { return wall.foot(x).distance >= r; });
+  }
+
   bool free(const Vec<Dim>& x, double r) const {
-    for (const Wall<Dim>& wall : scene_.walls) {
-      if (wall.foot(x).distance < r) return false;
-    }
+    if (!clear_of_walls(x, r)) return false;
     bool is_free = true;
     occupied_.for_each_near(x, r, [&](int j) {
       const Grain<Dim>& other = placed_.grains[static_cast<std::size_t>(j)];
@@ -190,15 +208,21 @@ class Placer {
     const Fill<Dim>& f = scene_.fills[index];
     // Each group has numbers of its own: a change in one leaves the others alone.
     Random random(scene_.seed + 0x9E3779B97F4A7C15ULL * (index + 1));
-    const int held = f.arrangement == Arrangement::lattice
-                         ? fill_lattice(f, static_cast<int>(index), random)
-                         : fill_at_random(f, static_cast<int>(index), random);
-    const std::string key = "fill[" + std::to_string(index) + "]";
-    if (held == 0) throw scene_.error(key, "\"" + f.name + "\": no grain fits into its region");
-    if (f.count && held < *f.count) {
-      throw scene_.error(key, "\"" + f.name + "\": its region held " + std::to_string(held) +
-                                  " of the " + std::to_string(*f.count) + " grains asked for");
+    if (f.arrangement == Arrangement::random) {
+      fill_at_random(f, static_cast<int>(index), random);
+      return;
     }
+    const int held = fill_lattice(f, static_cast<int>(index), random);
+    if (held == 0) fail(index, "no grain fits into its region");
+    if (f.count && held < *f.count) {
+      fail(index, "its region held " + std::to_string(held) + " of the " +
+                      std::to_string(*f.count) + " grains asked for");
+    }
+  }
+
+  [[noreturn]] void fail(std::size_t index, const std::string& message) const {
+    throw scene_.error("fill[" + std::to_string(index) + "]",
+                       "\"" + scene_.fills[index].name + "\": " + message);
   }
 
   Grain<Dim> grain_of(const Fill<Dim>& f, double radius, const Vec<Dim>& x, Random& random) const {
@@ -242,23 +266,126 @@ class Placer {
     return held;
   }
 
-  int fill_at_random(const Fill<Dim>& f, int group, Random& random) {
+  void fill_at_random(const Fill<Dim>& f, int group, Random& random) {
     std::vector<double> radii(static_cast<std::size_t>(*f.count));
     for (double& r : radii) r = draw(f.radius, random);
     std::sort(radii.begin(), radii.end(), std::greater<>());
-    int held = 0;
+    const std::string asked = refuse_beyond_densest(f, group, radii);
+    bool full = false;
     for (const double r : radii) {
       bool found = false;
+      double smallest = std::numeric_limits<double>::infinity();
+      Vec<Dim> least_bad = Vec<Dim>::Zero();
+      int overlapping = 0;  // a place behind a wall is no place
       for (int attempt = 0; attempt < kTries && !found; ++attempt) {
+        if (full && overlapping == kTriesWhenFull) break;
         Vec<Dim> x;
         for (int d = 0; d < Dim; ++d) x[d] = random.uniform(f.low[d] + r, f.high[d] - r);
-        found = ((x - f.low).array() >= r).all() && ((f.high - x).array() >= r).all() && free(x, r);
+        if (!(((x - f.low).array() >= r).all() && ((f.high - x).array() >= r).all())) continue;
+        found = free(x, r);
         if (found) add(grain_of(f, r, x, random), f.material, group);
+        if (found || !clear_of_walls(x, r)) continue;
+        ++overlapping;
+        const double overlap = largest_overlap(x, r);
+        if (overlap < smallest) {
+          smallest = overlap;
+          least_bad = x;
+        }
       }
-      if (!found) break;
-      ++held;
+      if (found) continue;
+      full = true;
+      if (smallest == std::numeric_limits<double>::infinity()) {
+        fail(static_cast<std::size_t>(group), "no grain fits into its region");
+      }
+      add(grain_of(f, r, least_bad, random), f.material, group);
     }
-    return held;
+    if (full) make_room(f, group, asked);
+  }
+
+  /// Whether a grain was placed at random in the same region.
+  bool shares_region(std::size_t grain, const Fill<Dim>& f) const {
+    if (placed_.group[grain] < 0) return false;
+    const Fill<Dim>& other = scene_.fills[static_cast<std::size_t>(placed_.group[grain])];
+    return other.arrangement == Arrangement::random && other.low == f.low && other.high == f.high;
+  }
+
+  /// @return the solid fraction asked for, in words
+  std::string refuse_beyond_densest(const Fill<Dim>& f, int group,
+                                    const std::vector<double>& radii) const {
+    double solid = 0;
+    double least = radii.back();
+    double most = radii.front();
+    const auto count = [&](double r) {
+      solid += grain_volume<Dim>(r);
+      least = std::min(least, r);
+      most = std::max(most, r);
+    };
+    for (const double r : radii) count(r);
+    for (std::size_t i = 0; i < placed_.grains.size(); ++i) {
+      if (shares_region(i, f)) count(placed_.grains[i].radius);
+    }
+    const double fraction = solid / (f.high - f.low).prod();
+    const std::string asked = "a solid fraction of " + three_digits(fraction) + " in its region";
+    // Small grains between large ones pass the bound of equal ones.
+    const double limit = least == most ? kDensest<Dim> : 1;
+    if (fraction > limit) {
+      fail(static_cast<std::size_t>(group), asked + "; " + (least == most ? "equal " : "") +
+                                                (Dim == 2 ? "discs" : "spheres") +
+                                                " reach at most " + three_digits(limit));
+    }
+    return asked;
+  }
+
+  static std::string three_digits(double value) {
+    return shortest(std::round(1000 * value) / 1000);
+  }
+
+  /// The deepest overlap of a ball with the grains so far, of the smaller radius [-].
+  double largest_overlap(const Vec<Dim>& x, double r) const {
+    double largest = 0;
+    occupied_.for_each_near(x, r, [&](int j) {
+      const Grain<Dim>& other = placed_.grains[static_cast<std::size_t>(j)];
+      largest = std::max(
+          largest, (r + other.radius - (x - other.position).norm()) / std::min(r, other.radius));
+      return true;
+    });
+    return largest;
+  }
+
+  /// Pushes apart what was placed at random in the region of a fill.
+  void make_room(const Fill<Dim>& f, int group, const std::string& asked) {
+    std::vector<std::size_t> chosen;
+    std::vector<Grain<Dim>> grains;
+    for (std::size_t i = 0; i < placed_.grains.size(); ++i) {
+      Grain<Dim> grain = placed_.grains[i];
+      const bool near = ((grain.position - f.low).array() > -grain.radius).all() &&
+                        ((f.high - grain.position).array() > -grain.radius).all();
+      if (!near) continue;
+      grain.pinned = !shares_region(i, f);
+      if (grain.pinned) grain.velocity.setZero(), grain.omega.setZero();
+      chosen.push_back(i);
+      grains.push_back(grain);
+    }
+    std::vector<Wall<Dim>> walls = scene_.walls;
+    for (int d = 0; d < Dim; ++d) {
+      walls.push_back(Wall<Dim>::half_space("low", f.low, Vec<Dim>::Unit(d)));
+      walls.push_back(Wall<Dim>::half_space("high", f.high, -Vec<Dim>::Unit(d)));
+    }
+    const double left = detail::push_apart(grains, std::move(walls), kPushes);
+    if (left > 0) {
+      fail(static_cast<std::size_t>(group),
+           asked + "; after " + std::to_string(kPushes) + " pushes grains still overlap by " +
+               three_digits(100 * left) + " % of the smaller radius (equal " +
+               (Dim == 2 ? "discs" : "spheres") + " at random reach about " +
+               shortest(kDensestRandom<Dim>) + ")");
+    }
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
+      placed_.grains[chosen[k]].position = grains[k].position;
+    }
+    occupied_ = Occupied<Dim>(cell_size(scene_));
+    for (std::size_t i = 0; i < placed_.grains.size(); ++i) {
+      occupied_.add(static_cast<int>(i), placed_.grains[i].position, placed_.grains[i].radius);
+    }
   }
 
   const Scene<Dim>& scene_;

@@ -485,6 +485,7 @@ class Reader {
     top_.for_each("fill", [&](Section& s, int) { read_fill(s); });
     top_.for_each("grain", [&](Section& s, int) { read_grain(s); });
     top_.for_each("wall", [&](Section& s, int index) { read_wall(s, index); });
+    top_.for_each("box", [&](Section& s, int) { read_box(s); });
     read_output();
     top_.finish();
     if (scene_.fills.empty() && scene_.grains.empty()) {
@@ -671,20 +672,19 @@ class Reader {
 
   void read_wall(Section& s, int index) {
     const std::string name = s.text("name", "wall " + std::to_string(index + 1));
-    for (const Wall<Dim>& other : scene_.walls) {
-      if (other.name == name) file_.fail(s.table(), s.path("name"), "a second \"" + name + "\"");
-    }
     const int kind = material(s, "material", false);
     Wall<Dim> wall;
-    if (s.find("point") || s.find("normal")) {
+    if (s.find("radius")) {
+      wall = read_cylinder(s, name);
+    } else if (s.find("point") || s.find("normal")) {
       const Vec<Dim> point = s.vector<Dim>("point", kLength);
       const Vec<Dim> normal = s.vector<Dim>("normal", kNumber);
       if (normal.isZero(0)) file_.expected(*s.find("normal"), s.path("normal"), "a direction");
       s.refuse("from", "either point and normal, or from and to");
       s.refuse("to", "either point and normal, or from and to");
+      s.refuse("axis", "an axis belongs to a round wall, with point and radius");
       wall = Wall<Dim>::half_space(name, point, normal);
-      // Normalising a unit vector again may change its last bit; a resolved scene must not.
-      if (std::abs(normal.squaredNorm() - 1) < 1e-14) wall.shape = HalfSpace<Dim>{normal};
+      if (is_unit(normal)) wall.shape = HalfSpace<Dim>{normal};
     } else if (s.find("from") || s.find("to")) {
       const Vec<Dim> from = s.vector<Dim>("from", kLength);
       if (const toml::node* along = s.find("along")) {
@@ -699,12 +699,89 @@ class Reader {
       }
     } else {
       s.finish();
-      file_.fail(s.table(), s.path("point"), "missing; expected point and normal, or from and to");
+      file_.fail(s.table(), s.path("point"),
+                 "missing; expected point and normal, from and to, or point and radius");
+    }
+    add_wall(s, std::move(wall), kind, s.sub_table("motion"));
+  }
+
+  Wall<Dim> read_cylinder(Section& s, const std::string& name) {
+    const double radius = s.number("radius", kLength, Range::positive);
+    const Vec<Dim> point = s.vector<Dim>("point", kLength);
+    for (const char* key : {"normal", "from", "to", "along"}) {
+      s.refuse(key, "a round wall has point" + std::string(Dim == 3 ? ", axis" : "") +
+                        " and radius; remove this line");
+    }
+    Vec<Dim> axis = Vec<Dim>::Zero();
+    if (Dim == 2) {
+      s.refuse("axis", "a circle has none; remove this line");
+    } else {
+      axis = s.vector<Dim>("axis", kNumber);
+      if (axis.isZero(0)) file_.expected(*s.find("axis"), s.path("axis"), "a direction");
+    }
+    Wall<Dim> wall = Wall<Dim>::cylinder(name, point, axis, radius);
+    if (is_unit(axis)) wall.shape = Cylinder<Dim>{radius, axis};
+    return wall;
+  }
+
+  /// Sides of a box as walls of their own, called by the direction in which they lie.
+  void read_box(Section& s) {
+    const Vec<Dim> low = s.vector<Dim>("low", kLength);
+    const Vec<Dim> high = s.vector<Dim>("high", kLength);
+    if (!(low.array() < high.array()).all()) {
+      file_.fail(s.table(), s.path("high"), "expected low below high in every direction");
+    }
+    const std::string prefix = s.text("name", "");
+    const int kind = material(s, "material", false);
+    std::vector<std::string> sides{"left", "right"};
+    if (Dim == 3) sides.insert(sides.end(), {"front", "back"});
+    sides.insert(sides.end(), {"bottom", "top"});
+    std::vector<bool> open(sides.size(), false);
+    if (const toml::node* node = s.find("open")) {
+      const auto* array = node->as_array();
+      if (array == nullptr) file_.expected(*node, s.path("open"), "a list of sides");
+      for (const toml::node& item : *array) {
+        if (!item.is_string()) file_.expected(item, s.path("open"), "a side");
+        const std::string& side = item.as_string()->get();
+        const auto found = std::find(sides.begin(), sides.end(), side);
+        if (found == sides.end()) {
+          file_.fail(item, s.path("open"),
+                     "no side \"" + side + "\"" + suggestion(side, sides) +
+                         "; expected some of left, right, " + (Dim == 3 ? "front, back, " : "") +
+                         "bottom, top");
+        }
+        open[static_cast<std::size_t>(found - sides.begin())] = true;
+      }
+    }
+    const toml::table* motion = s.sub_table("motion");
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+      if (open[k]) continue;
+      Vec<Dim> inwards = Vec<Dim>::Zero();
+      inwards[static_cast<Eigen::Index>(k / 2)] = k % 2 == 0 ? 1 : -1;
+      const std::string name = prefix.empty() ? sides[k] : prefix + " " + sides[k];
+      Wall<Dim> wall = Wall<Dim>::half_space(name, k % 2 == 0 ? low : high, inwards);
+      add_wall(s, std::move(wall), kind, motion);
+      if (std::holds_alternative<Piston<Dim>>(scene_.walls.back().motion)) {
+        file_.fail(*motion, s.path("motion"),
+                   "each side would move for itself; leave the side open and give the piston as a "
+                   "[[wall]]");
+      }
+    }
+  }
+
+  void add_wall(Section& s, Wall<Dim> wall, int kind, const toml::table* motion) {
+    for (const Wall<Dim>& other : scene_.walls) {
+      if (other.name == wall.name) {
+        file_.fail(s.table(), s.path("name"), "a second \"" + wall.name + "\"");
+      }
     }
     wall.kind = kind;
-    if (const toml::table* motion = s.sub_table("motion")) read_motion(s, *motion, wall);
+    if (motion != nullptr) read_motion(s, *motion, wall);
     scene_.walls.push_back(std::move(wall));
   }
+
+  /// Normalising a unit vector again may change its last bit; a resolved scene must not.
+  static bool is_unit(const Vec<Dim>& v) { return std::abs(v.squaredNorm() - 1) < 1e-14; }
 
   void read_motion(Section& parent, const toml::table& table, Wall<Dim>& wall) {
     Section s(file_, table, parent.path("motion"));
@@ -742,6 +819,8 @@ class Reader {
       if (m.load.isZero(0)) {
         file_.expected(*s.find("load"), s.path("load"), "a force: the piston moves along it");
       }
+      m.start = s.number("start", kTime, Range::not_negative, 0);
+      s.refuse("stop", "a piston has none: grains stop it; remove this line");
       wall.motion = m;
     }
     s.finish();
@@ -804,10 +883,12 @@ int dimension_of(const toml::table& root, const std::string& name) {
 
 // -------------------------------------------------------------------------------------- writing
 
-/// A number that TOML reads as one: a long row of digits would be too large an integer.
+/// A number that TOML reads as the same one: a long row of digits would be too large an integer,
+/// and an integer has no negative zero.
 std::string number(double value) {
   std::string text = shortest(value);
-  if (std::abs(value) >= 1e15 && text.find_first_of(".en") == std::string::npos) text += ".0";
+  const bool fails_as_integer = std::abs(value) >= 1e15 || (value == 0 && std::signbit(value));
+  if (fails_as_integer && text.find_first_of(".en") == std::string::npos) text += ".0";
   return text;
 }
 
@@ -882,7 +963,8 @@ std::string motion_text(const Wall<Dim>& wall) {
            ", frequency = " + number(shake->frequency);
     times(shake->start, shake->stop);
   } else if (const auto* piston = std::get_if<Piston<Dim>>(&wall.motion)) {
-    text = "type = \"piston\", mass = " + number(piston->mass) + ", load = " + list(piston->load);
+    text = "type = \"piston\", mass = " + number(piston->mass) + ", load = " + list(piston->load) +
+           ", start = " + number(piston->start);
   }
   return text.empty() ? "" : "motion = { " + text + " }\n";
 }
@@ -1007,6 +1089,10 @@ std::string to_toml(const Scene<Dim>& scene) {
     if (const auto* plane = std::get_if<HalfSpace<Dim>>(&wall.shape)) {
       line("point", list(wall.home), "m");
       line("normal", list(plane->normal));
+    } else if (const auto* round = std::get_if<Cylinder<Dim>>(&wall.shape)) {
+      line("point", list(wall.home), "m");
+      if (Dim == 3) line("axis", list(round->axis));
+      line("radius", number(round->radius), "m");
     } else {
       line("from", list(wall.home), "m");
       // `to` could not promise the same bits: to - from is rounded.

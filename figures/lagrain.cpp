@@ -117,12 +117,7 @@ int run_scene(const RunArguments& arguments) {
 }
 
 int run_command(const RunArguments& arguments) {
-  const int dimension = scene_dimension(arguments.scene);
-  if (dimension == 3) {
-    throw SceneError(fs::path(arguments.scene).filename().string() +
-                     ": dimension: spheres are not supported yet; expected 2, got 3");
-  }
-  return run_scene<2>(arguments);
+  return scene_dimension(arguments.scene) == 2 ? run_scene<2>(arguments) : run_scene<3>(arguments);
 }
 
 struct FigureArguments {
@@ -164,7 +159,7 @@ int complain(const std::string& sentence, int code) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Granular simulation of discs on dynamic regular triangulations."};
+  CLI::App app{"Granular simulation of discs and spheres on dynamic regular triangulations."};
   app.name("lagrain");
   app.require_subcommand(1);
   app.set_version_flag("--version", std::string("lagrain ") + version());

@@ -8,9 +8,16 @@ namespace lagrain {
 template <int Dim>
 std::unique_ptr<Run<Dim>> make_scene_run(const Scene<Dim>& scene) {
   if (scene.neighbourhood != NeighbourhoodModel::triangulation) return make_run(scene);
-  return make_run(scene, AnyNeighbourhood<Dim>(TriangulationNeighbourhood<Dim>{}));
+  if constexpr (Dim == 2) {
+    return make_run(scene, AnyNeighbourhood<Dim>(TriangulationNeighbourhood<Dim>{}));
+  } else {
+    throw scene.error("neighbourhood",
+                      "spheres have no triangulation yet; expected \"linked cells\" or \"all "
+                      "pairs\"");
+  }
 }
 
 template std::unique_ptr<Run<2>> make_scene_run<2>(const Scene<2>&);
+template std::unique_ptr<Run<3>> make_scene_run<3>(const Scene<3>&);
 
 }  // namespace lagrain

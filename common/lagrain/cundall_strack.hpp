@@ -46,7 +46,7 @@ struct CundallStrack {
 
     const double kt = stiffness_ratio * normal.stiffness_at(touch);
     const double gt = 2 * tangential_damping_ratio * std::sqrt(kt * touch.effective_mass);
-    Vec<Dim> xi = turned_into_plane<Dim>(memory.stretch, touch.normal);
+    Vec<Dim> xi = turned_with<Dim>(memory.stretch, touch, time_step);
     const double stored = 0.5 * kt * xi.squaredNorm();
     xi = cut<Dim>(xi + time_step * touch.slip, friction * fn / kt);
     const Vec<Dim> ft = cut<Dim>(-(kt * xi + gt * touch.slip), friction * fn);
@@ -83,13 +83,14 @@ struct CundallStrack {
     return squared > length * length ? Vec<Dim>(length / std::sqrt(squared) * v) : v;
   }
 
-  /// The stretch follows the contact as it turns: the part along the new normal is dropped and the
-  /// length kept.
+  /// The stretch follows the contact as it turns: about the normal by the twist of the step, and
+  /// with the normal, whose part is dropped. The length is kept.
   template <int Dim>
-  static Vec<Dim> turned_into_plane(const Vec<Dim>& stretch, const Vec<Dim>& n) {
+  static Vec<Dim> turned_with(const Vec<Dim>& stretch, const Touch<Dim>& touch, double time_step) {
     const double before = stretch.squaredNorm();
     if (before == 0) return stretch;
-    const Vec<Dim> flat = stretch - stretch.dot(n) * n;
+    const Vec<Dim> flat = stretch - stretch.dot(touch.normal) * touch.normal +
+                          cross(SpinVec<Dim>(time_step * touch.twist), stretch);
     const double after = flat.squaredNorm();
     if (after == 0) return flat;
     return std::sqrt(before / after) * flat;

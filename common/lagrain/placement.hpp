@@ -22,10 +22,13 @@ struct Placement {
 /// A lattice fills its region row by row from the bottom (the last axis points up), in cells of the
 /// group's largest diameter and a little room for a seeded jitter; cells that a wall or an earlier
 /// grain already takes are passed over. A random arrangement tries places until one is free, large
-/// grains first. Neither makes overlaps.
+/// grains first. Grains that find none are placed at random all the same, and everything that was
+/// placed at random in the same region, by this fill or an earlier one, is pushed apart; all other
+/// grains stay. Nothing overlaps in the end.
 ///
-/// @throws SceneError if a region does not hold its grains (the message says how many it held), or
-/// if grains placed by hand overlap each other or a wall by more than the scene allows
+/// @throws SceneError if a region does not hold its grains (the message says how many a lattice
+/// held, or which solid fraction was asked for and what the limit is), or if grains placed by hand
+/// overlap each other or a wall by more than the scene allows
 template <int Dim>
 Placement<Dim> place_grains(const Scene<Dim>& scene);
 

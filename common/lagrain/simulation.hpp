@@ -220,6 +220,10 @@ class Simulation {
                         touch.normal);
       touch.slip = velocity + touch.closing * touch.normal;
     }
+    if constexpr (needs.memory) {
+      touch.twist =
+          about(touch.normal, SpinVec<Dim>(0.5 * (grains_.omega.col(i) + grains_.omega.col(j))));
+    }
     touch.effective_mass = 1 / inverse_mass;
     touch.effective_radius = grains_.radius[i] * grains_.radius[j] / reach;
     return true;
@@ -237,6 +241,9 @@ class Simulation {
     if constexpr (needs.spin) {
       velocity -= cross(SpinVec<Dim>(distance * grains_.omega.col(i)), normal);
       touch.slip = velocity + touch.closing * normal;
+    }
+    if constexpr (needs.memory) {
+      touch.twist = about(normal, SpinVec<Dim>(0.5 * grains_.omega.col(i)));
     }
     touch.effective_mass = grains_.mass[i];
     touch.effective_radius = grains_.radius[i];

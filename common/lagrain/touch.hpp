@@ -13,8 +13,11 @@ struct Touch {
   Vec<Dim> normal = Vec<Dim>::Zero();  ///< unit vector from j to i [-]
   double closing = 0;                  ///< -(v_i - v_j) . normal [m/s], positive when approaching
   Vec<Dim> slip = Vec<Dim>::Zero();    ///< tangential velocity of i against j at the contact [m/s]
-  double effective_mass = 0;           ///< m_i m_j / (m_i + m_j) [kg]; m_i against a wall
-  double effective_radius = 0;         ///< r_i r_j / (r_i + r_j) [m]; r_i against a wall
+  /// Mean angular velocity of the two about the normal [rad/s]: how fast the contact turns in its
+  /// own plane. Known to laws that remember; a wall does not turn.
+  SpinVec<Dim> twist = SpinVec<Dim>::Zero();
+  double effective_mass = 0;    ///< m_i m_j / (m_i + m_j) [kg]; m_i against a wall
+  double effective_radius = 0;  ///< r_i r_j / (r_i + r_j) [m]; r_i against a wall
 };
 
 /// The answer of a law, and where the energy of the step went.

@@ -39,4 +39,13 @@ inline SpinVec<3> torque(const Vec<3>& arm, const Vec<3>& force) {
   return cross(SpinVec<3>(arm), force);
 }
 
+/// The part of a spin that turns about the direction n (unit): none in the plane, where every axis
+/// is at a right angle to n.
+inline SpinVec<2> about(const Vec<2>&, const SpinVec<2>&) {
+  return SpinVec<2>(0.0);
+}
+inline SpinVec<3> about(const Vec<3>& n, const SpinVec<3>& omega) {
+  return n.dot(omega) * n;
+}
+
 }  // namespace lagrain

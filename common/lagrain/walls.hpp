@@ -1,6 +1,7 @@
 #pragma once
 /// @file
-/// Walls: half-spaces and segments, fixed or moving, as contact partners that never turn.
+/// Walls: half-spaces, segments and cylinders, fixed or moving, as contact partners that never
+/// turn.
 
 #include <lagrain/vec.hpp>
 
@@ -25,6 +26,17 @@ struct WallSegment {
   Vec<Dim> along;  ///< from the wall's point to the other end [m]
 };
 
+/// A round container: everything further than the radius from the axis, a line through the wall's
+/// point, is solid. In the plane there is no axis: a circle about the point.
+///
+/// To a law the wall is flat (its curvature is left out of Hertz's effective radius): for grains
+/// small against the container.
+template <int Dim>
+struct Cylinder {
+  double radius;  ///< [m]
+  Vec<Dim> axis;  ///< unit [-]; zero for a circle in the plane, and a ball in space
+};
+
 struct Fixed {};
 
 /// Constant velocity between two times.
@@ -45,19 +57,20 @@ struct Shake {
   double stop = std::numeric_limits<double>::infinity();
 };
 
-/// A guided mass: moves along its load, pushed by the load and by the grains.
+/// A guided mass: moves along its load, pushed by the load and by the grains; held until its start.
 template <int Dim>
 struct Piston {
-  double mass;    ///< [kg]
-  Vec<Dim> load;  ///< [N], its own weight included
+  double mass;       ///< [kg]
+  Vec<Dim> load;     ///< [N], its own weight included
+  double start = 0;  ///< [s]
 };
 
 /// A wall and the force that the grains exert on it.
 template <int Dim>
 struct Wall {
   std::string name;
-  Vec<Dim> point = Vec<Dim>::Zero();  ///< where it is now: on the plane, or the segment's end [m]
-  std::variant<HalfSpace<Dim>, WallSegment<Dim>> shape;
+  Vec<Dim> point = Vec<Dim>::Zero();  ///< now: on the plane, the segment's end, on the axis [m]
+  std::variant<HalfSpace<Dim>, WallSegment<Dim>, Cylinder<Dim>> shape;
   std::variant<Fixed, Steady<Dim>, Shake<Dim>, Piston<Dim>> motion = Fixed{};
   int kind = 0;                          ///< row of the table of laws
   Vec<Dim> home = Vec<Dim>::Zero();      ///< where it was at time 0 [m], for motions given in time
@@ -70,6 +83,11 @@ struct Wall {
   static Wall segment(std::string name, const Vec<Dim>& from, const Vec<Dim>& to) {
     return {std::move(name), from, WallSegment<Dim>{to - from}, Fixed{}, 0, from};
   }
+  /// @param axis zero in the plane
+  static Wall cylinder(std::string name, const Vec<Dim>& point, const Vec<Dim>& axis,
+                       double radius) {
+    return {std::move(name), point, Cylinder<Dim>{radius, axis.normalized()}, Fixed{}, 0, point};
+  }
 
   bool moves() const { return !std::holds_alternative<Fixed>(motion); }
 
@@ -79,16 +97,7 @@ struct Wall {
     Vec<Dim> normal;
   };
   Foot foot(const Vec<Dim>& x) const {
-    if (const auto* plane = std::get_if<HalfSpace<Dim>>(&shape)) {
-      return {(x - point).dot(plane->normal), plane->normal};
-    }
-    const Vec<Dim>& along = std::get<WallSegment<Dim>>(shape).along;
-    const double t = std::clamp((x - point).dot(along) / along.squaredNorm(), 0.0, 1.0);
-    const Vec<Dim> away = x - (point + t * along);
-    const double distance = away.norm();
-    // A centre exactly on the segment is pushed out along its first normal.
-    if (distance == 0) return {0, any_normal(along)};
-    return {distance, away / distance};
+    return std::visit([&](const auto& s) { return foot_on(s, x); }, shape);
   }
 
   /// Visits, in increasing order, every grain i whose centre x.col(i) is no further than reach(i)
@@ -96,15 +105,13 @@ struct Wall {
   template <class Reach, class F>
   void for_each_within(const Columns<Dim>& x, Reach&& reach, F&& visit) const {
     const int n = static_cast<int>(x.cols());
-    if (const auto* plane = std::get_if<HalfSpace<Dim>>(&shape)) {
-      for (int i = 0; i < n; ++i) {
-        if ((x.col(i) - point).dot(plane->normal) <= reach(i)) visit(i);
-      }
-    } else {
-      for (int i = 0; i < n; ++i) {
-        if (foot(x.col(i)).distance <= reach(i)) visit(i);
-      }
-    }
+    std::visit(
+        [&](const auto& s) {
+          for (int i = 0; i < n; ++i) {
+            if (foot_on(s, x.col(i)).distance <= reach(i)) visit(i);
+          }
+        },
+        shape);
   }
 
   /// Brings the wall to time t [s], a step dt [s] after the last call.
@@ -113,7 +120,29 @@ struct Wall {
   }
 
  private:
+  Foot foot_on(const HalfSpace<Dim>& plane, const Vec<Dim>& x) const {
+    return {(x - point).dot(plane.normal), plane.normal};
+  }
+  Foot foot_on(const WallSegment<Dim>& segment, const Vec<Dim>& x) const {
+    const Vec<Dim>& along = segment.along;
+    const double t = std::clamp((x - point).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    const Vec<Dim> away = x - (point + t * along);
+    const double distance = away.norm();
+    // A centre exactly on the segment is pushed out along its first normal.
+    if (distance == 0) return {0, any_normal(along)};
+    return {distance, away / distance};
+  }
+  Foot foot_on(const Cylinder<Dim>& cylinder, const Vec<Dim>& x) const {
+    const Vec<Dim> arm = x - point;
+    const Vec<Dim> away = arm - arm.dot(cylinder.axis) * cylinder.axis;
+    const double distance = away.norm();
+    // On the axis all of the wall is equally far.
+    if (distance == 0) return {cylinder.radius, any_normal(cylinder.axis)};
+    return {cylinder.radius - distance, away / -distance};
+  }
+
   static Vec<Dim> any_normal(const Vec<Dim>& along) {
+    if (along.isZero(0)) return Vec<Dim>::UnitX();
     Eigen::Index flattest = 0;
     along.cwiseAbs().minCoeff(&flattest);
     const Vec<Dim> n = Vec<Dim>::Unit(flattest);
@@ -132,7 +161,8 @@ struct Wall {
     point = home + std::sin(phase) * m.amplitude;
     velocity = on ? Vec<Dim>(omega * std::cos(phase) * m.amplitude) : Vec<Dim>(Vec<Dim>::Zero());
   }
-  void follow(const Piston<Dim>& m, double, double dt) {
+  void follow(const Piston<Dim>& m, double t, double dt) {
+    if (t <= m.start) return;
     const Vec<Dim> axis = m.load.normalized();
     velocity += dt * (m.load.norm() + force.dot(axis)) / m.mass * axis;
     point += dt * velocity;

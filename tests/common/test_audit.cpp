@@ -1,6 +1,7 @@
 #include <lagrain/audit.hpp>
 
 #include <support/motion_scenes.hpp>
+#include <support/space.hpp>
 
 #include <doctest/doctest.h>
 
@@ -10,22 +11,25 @@ using namespace lagrain;
 using namespace lagrain::test;
 
 namespace {
+
 constexpr int kBeyondBruteForce = ContactAudit<2>::kBruteForceLimit + 500;
-}
+
+}  // namespace
 
 TEST_SUITE("audit") {
-  TEST_CASE("the audit counts the contacts that a list lacks, by brute force and by cells") {
-    for (const auto& [kind, count] : {std::pair{CloudKind::kUniform, 200},
-                                      std::pair{CloudKind::kUniform, kBeyondBruteForce},
-                                      std::pair{CloudKind::kSizes, kBeyondBruteForce}}) {
+  TEST_CASE_TEMPLATE("the audit counts the contacts that a list lacks, by brute force and by cells",
+                     S, Space<2>, Space<3>) {
+    for (const auto& [kind, count] :
+         {std::pair{CloudKind::kUniform, 200}, std::pair{CloudKind::kUniform, kBeyondBruteForce},
+          std::pair{CloudKind::kSizes, kBeyondBruteForce}}) {
       CAPTURE(count);
       Random random(10);
-      const auto cloud = make_cloud<2>(kind, count, random);
+      const auto cloud = make_cloud<S::Dim>(kind, count, random);
       Eigen::VectorXd margin = Eigen::VectorXd::Zero(count);
       std::vector<Pair> contacts;
-      AllPairs<2>{}.near_pairs(cloud.x, cloud.radius, margin, contacts);
+      AllPairs<S::Dim>{}.near_pairs(cloud.x, cloud.radius, margin, contacts);
       REQUIRE(contacts.size() > 10);
-      ContactAudit<2> audit;
+      ContactAudit<S::Dim> audit;
 
       audit.check(cloud.x, cloud.radius, contacts);
       CHECK(audit.missed() == 0);

@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+#include <Eigen/Geometry>
+
 #include <cmath>
 #include <numbers>
 
@@ -23,6 +25,14 @@ Touch<Dim> resting_touch(const Vec<Dim>& normal) {
   touch.effective_mass = 1;
   touch.effective_radius = 1;
   return touch;
+}
+
+/// The turn of a rigid body that has spun at omega [rad/s] for t [s].
+Eigen::Matrix2d turn_after(const SpinVec<2>& omega, double t) {
+  return Eigen::Rotation2Dd(t * omega[0]).toRotationMatrix();
+}
+Eigen::Matrix3d turn_after(const SpinVec<3>& omega, double t) {
+  return Eigen::AngleAxisd(t * omega.norm(), omega.normalized()).toRotationMatrix();
 }
 
 }  // namespace
@@ -100,6 +110,71 @@ TEST_SUITE("cundall_strack") {
                   std::integral_constant<int, 3>{}) -
            Vec<3>(0, 1e-3, 0))
               .norm() < 1e-16);
+  }
+
+  TEST_CASE_TEMPLATE("the force of two grains that turn as one rigid body turns with them", C,
+                     Case<2, FrictionalSpring>, Case<3, FrictionalSpring>,
+                     Case<3, FrictionalHertz>) {
+    constexpr int Dim = C::Dim;
+    const auto law = make_law<typename C::Law>({.friction = 1e9});
+    Random random(11);
+    for (int k = 0; k < cases(10, 200); ++k) {
+      CAPTURE(k);
+      // About any axis: a contact both tilts and twists.
+      SpinVec<Dim> omega;
+      Vec<Dim> normal;
+      Vec<Dim> stretch;
+      for (int d = 0; d < kSpinDim<Dim>; ++d) omega[d] = 2 * random.normal();
+      for (int d = 0; d < Dim; ++d) normal[d] = random.normal(), stretch[d] = random.normal();
+      normal.normalize();
+      stretch = 1e-3 * (stretch - stretch.dot(normal) * normal).normalized();
+      typename C::Law::template Memory<Dim> memory{stretch};
+      const double dt = 1e-4;
+      constexpr int kSteps = 10000;
+
+      Response<Dim> response;
+      const auto first = law.respond(resting_touch<Dim>(normal), memory, 0.0).force.eval();
+      for (int step = 1; step <= kSteps; ++step) {
+        Touch<Dim> touch = resting_touch<Dim>(turn_after(omega, step * dt) * normal);
+        touch.twist = about(touch.normal, omega);
+        response = law.respond(touch, memory, dt);
+      }
+
+      const auto turn = turn_after(omega, kSteps * dt);
+      CHECK(memory.stretch.norm() == doctest::Approx(1e-3).epsilon(1e-11));
+      // Each step errs by at most (omega dt)^2 / 4 in direction.
+      const double angle = 0.25 * omega.squaredNorm() * dt * dt * kSteps;
+      CHECK((memory.stretch - turn * stretch).norm() < 1e-3 * (angle + 1e-11));
+      CHECK((response.force - turn * first).norm() < first.norm() * (angle + 1e-11));
+    }
+  }
+
+  TEST_CASE_TEMPLATE("a contact twists with the mean spin of its two grains; a wall does not turn",
+                     C, Case<2, FrictionalSpring>, Case<3, FrictionalSpring>) {
+    constexpr int Dim = C::Dim;
+    Grain<Dim> a;
+    a.radius = a.mass = 1;
+    a.position = 0.999 * up<Dim>();
+    Grain<Dim> b = a;
+    b.position = 2.998 * up<Dim>();
+    for (int d = 0; d < kSpinDim<Dim>; ++d) a.omega[d] = 2 + d, b.omega[d] = 6 - d;
+    const auto floor = Wall<Dim>::half_space("floor", Vec<Dim>::Zero(), up<Dim>());
+    const auto sim =
+        make_sim<Dim>(std::vector<Grain<Dim>>{a, b}, make_law<FrictionalSpring>({}), {floor}, 1);
+
+    int seen = 0;
+    const auto check = [&](const Touch<Dim>& touch, const SpinVec<Dim>& mean) {
+      ++seen;
+      CHECK((touch.twist - about(up<Dim>(), mean)).norm() < 1e-15);
+      if (Dim == 2) CHECK(touch.twist.isZero(0));
+    };
+    sim.for_each_contact([&](auto, const Touch<Dim>& touch, const auto&, const auto&) {
+      check(touch, 0.5 * (a.omega + b.omega));
+    });
+    sim.for_each_wall_contact([&](auto, const Touch<Dim>& touch, const auto&, const auto&) {
+      check(touch, 0.5 * a.omega);
+    });
+    CHECK(seen == 2);
   }
 
   TEST_CASE_TEMPLATE("without friction there is no tangential force, nor memory of one", C,

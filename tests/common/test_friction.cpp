@@ -6,8 +6,11 @@
 
 #include <doctest/doctest.h>
 
+#include <Eigen/Geometry>
+
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 using namespace lagrain;
 using namespace lagrain::test;
@@ -62,9 +65,102 @@ double inertia_factor(double arm) {
   return kInertiaFactor<Dim> / (arm * arm);
 }
 
+/// Two grains on an oblique course, both spinning.
+template <int Dim>
+std::vector<Grain<Dim>> oblique_pair() {
+  Grain<Dim> a;
+  a.radius = 1;
+  a.mass = 1;
+  a.velocity[0] = 0.9;
+  a.velocity[1] = 0.3;
+  Grain<Dim> b;
+  b.radius = 0.7;
+  b.mass = 0.5;
+  b.position[0] = 1.69999;
+  b.position[1] = 0.01;
+  b.velocity[0] = -0.2;
+  b.velocity[1] = -0.7;
+  a.omega[kSpinDim<Dim> - 1] = 0.8;
+  b.omega[kSpinDim<Dim> - 1] = -1.1;
+  return {a, b};
+}
+
+/// The pair some steps later, in contact or parted. In the plane the grains may have the inertia of
+/// spheres.
+template <int Dim, class Law>
+Grains<Dim, Law::needs> collided(const std::vector<Grain<Dim>>& pair, const Law& law, int steps,
+                                 bool spheres = Dim == 3) {
+  auto grains = make_grains<Dim, Law::needs>(pair);
+  for (int i = 0; i < 2 && spheres; ++i) {
+    grains.inverse_inertia[i] = 1 / grain_inertia<3>(grains.mass[i], grains.radius[i]);
+  }
+  const LawTable<Law> laws(law);
+  Setting<Dim> setting;
+  setting.time_step = 0.5 * time_scales(grains, laws, std::vector<Wall<Dim>>{}).safe_step;
+  Sim<Dim, Law> sim(std::move(grains), laws, {}, setting);
+  for (int k = 0; k < steps; ++k) sim.step();
+  return sim.grains();
+}
+
+/// Some rotation on no axis.
+template <int Dim>
+Eigen::Matrix<double, Dim, Dim> turned_frame() {
+  if constexpr (Dim == 2) {
+    return Eigen::Rotation2Dd(1.1).toRotationMatrix();
+  } else {
+    return Eigen::AngleAxisd(2.3, oblique<3>()).toRotationMatrix();
+  }
+}
+
 }  // namespace
 
 TEST_SUITE("friction") {
+  TEST_CASE_TEMPLATE("a collision is the same in every frame", C, FRICTION_LAWS) {
+    constexpr int Dim = C::Dim;
+    const auto law = make_law<typename C::Law>(kRubber);
+    const auto q = turned_frame<Dim>();
+    auto pair = oblique_pair<Dim>();
+    // In space, out of one plane: the contact also twists.
+    if (Dim == 3) pair[0].omega[0] = 5, pair[1].omega[1] = 2, pair[0].velocity[Dim - 1] = 0.4;
+    auto turned = pair;
+    for (auto& g : turned) {
+      g.position = q * g.position;
+      g.velocity = q * g.velocity;
+      if constexpr (Dim == 3) g.omega = q * g.omega;
+    }
+
+    for (const int steps : {7, 40}) {  // in contact, and after it
+      const auto here = collided<Dim>(pair, law, steps);
+      const auto there = collided<Dim>(turned, law, steps);
+
+      // Overlaps of 1e-3 are differences of places of size 1: 1e-13 of them is rounding.
+      CHECK((there.velocity - q * here.velocity).norm() < 1e-11);
+      if constexpr (Dim == 3) {
+        CHECK((there.omega - q * here.omega).norm() < 1e-11);
+      } else {
+        CHECK((there.omega - here.omega).norm() < 1e-11);
+      }
+      CHECK((here.velocity.col(0) - pair[0].velocity).norm() > 0.01);
+    }
+  }
+
+  TEST_CASE_TEMPLATE("spheres that collide in a plane are discs with the inertia of spheres", Law,
+                     FrictionalSpring, FrictionalHertz, ViscousSpring, ViscousHertz) {
+    const auto law = make_law<Law>(kRubber);
+    for (const int steps : {7, 40}) {
+      const auto flat = collided<2>(oblique_pair<2>(), law, steps, true);
+      const auto round = collided<3>(oblique_pair<3>(), law, steps);
+
+      // The same sums, with zeros added: bit for bit.
+      CHECK(round.position.topRows(2) == flat.position);
+      CHECK(round.velocity.topRows(2) == flat.velocity);
+      CHECK(round.omega.bottomRows(1) == flat.omega);
+      CHECK(round.velocity.bottomRows(1).isZero(0));
+      CHECK(round.omega.topRows(2).isZero(0));
+      CHECK(std::abs(flat.omega(0, 0) - 0.8) > 0.01);
+    }
+  }
+
   TEST_CASE_TEMPLATE(
       "a grain rolls down an incline at g sin / (1 + I / m r^2): 2/3 disc, 5/7 sphere", C,
       FRICTION_LAWS) {

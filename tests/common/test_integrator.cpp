@@ -171,7 +171,9 @@ TEST_SUITE("integrator") {
     CHECK(observed_order(coarse, fine, 4) == doctest::Approx(2).epsilon(0.1));
   }
 
-  TEST_CASE("where contacts open and close, fourth order is not kept") {
+  TEST_CASE_TEMPLATE("where contacts open and close, fourth order is not kept", C,
+                     Case<2, LinearSpring>, Case<3, LinearSpring>) {
+    constexpr int Dim = C::Dim;
     // The spring's force has a kink at first touch, and again at the last: second order. (The two
     // would cancel in a contact of a whole number of steps, so the steps are detuned.)
     const auto law = make_law<LinearSpring>({});
@@ -180,15 +182,15 @@ TEST_SUITE("integrator") {
       double sum = 0;
       constexpr int kPhases = 64;
       for (int p = 0; p < kPhases; ++p) {
-        Grain<2> a;
+        Grain<Dim> a;
         a.radius = a.mass = 1;
-        Grain<2> b = a;
+        Grain<Dim> b = a;
         const double detuned = refinement * (1 + 0.1 * std::fmod(p * std::numbers::phi, 1.0));
         const double dt = 0.1 * duration / detuned;
         const double gap = (1 + (p + 0.5) / kPhases) * dt;
-        b.position = (2 + gap) * oblique<2>();
-        b.velocity = -oblique<2>();
-        auto sim = compose<2, LinearSpring, ForestRuth>({a, b}, law, {}, dt);
+        b.position = (2 + gap) * oblique<Dim>();
+        b.velocity = -oblique<Dim>();
+        auto sim = compose<Dim, LinearSpring, ForestRuth>({a, b}, law, {}, dt);
         while (sim.time() < 1.5 * duration) sim.step();
         const double apart = (sim.grains().position.col(1) - sim.grains().position.col(0)).norm();
         sum += std::pow(apart - (2 + sim.time() - gap - duration), 2);
@@ -201,15 +203,17 @@ TEST_SUITE("integrator") {
     CHECK(order == doctest::Approx(2).epsilon(0.15));
   }
 
-  TEST_CASE("the fourth-order scheme refuses what it cannot integrate") {
-    Grain<2> g;
+  TEST_CASE_TEMPLATE("the fourth-order scheme refuses what it cannot integrate", C,
+                     Case<2, LinearSpring>, Case<3, LinearSpring>) {
+    constexpr int Dim = C::Dim;
+    Grain<Dim> g;
     g.radius = g.mass = 1;
-    const auto build = [&](const auto& law, std::vector<Wall<2>> walls) {
+    const auto build = [&](const auto& law, std::vector<Wall<Dim>> walls) {
       using Law = std::decay_t<decltype(law)>;
-      return compose<2, Law, ForestRuth>({g}, law, walls, 1e-5);
+      return compose<Dim, Law, ForestRuth>({g}, law, walls, 1e-5);
     };
-    auto moving = Wall<2>::half_space("belt", -2 * up<2>(), up<2>());
-    moving.motion = Steady<2>{along<2>()};
+    auto moving = Wall<Dim>::half_space("belt", -2 * up<Dim>(), up<Dim>());
+    moving.motion = Steady<Dim>{along<Dim>()};
 
     CHECK_THROWS_WITH_AS(build(make_law<LinearSpring>({.restitution = 0.9}), {}),
                          doctest::Contains("restitution 1"), ContractError);

@@ -1,11 +1,15 @@
 #include <lagrain/placement.hpp>
 
 #include "support/scene_text.hpp"
+#include "support/space.hpp"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 using namespace lagrain;
 using namespace lagrain::test;
@@ -39,20 +43,55 @@ Scene<Dim> box(Arrangement arrangement, int count) {
   return scene;
 }
 
+/// The smallest gap of any two grains, and of any grain to the sides of [0, 1]^Dim [m].
+template <int Dim>
+double smallest_gap(const std::vector<Grain<Dim>>& grains) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < grains.size(); ++i) {
+    const auto& a = grains[i];
+    smallest = std::min(smallest, a.position.minCoeff() - a.radius);
+    smallest = std::min(smallest, 1 - a.position.maxCoeff() - a.radius);
+    for (std::size_t j = 0; j < i; ++j) {
+      const auto& b = grains[j];
+      smallest = std::min(smallest, (a.position - b.position).norm() - (a.radius + b.radius));
+    }
+  }
+  return smallest;
+}
+
 template <int Dim>
 void check_disjoint_and_inside(const Scene<Dim>& scene) {
   const auto placed = place_grains(scene);
-  const int n = static_cast<int>(placed.grains.size());
-  REQUIRE(n == *scene.fills.front().count + 1);
-  for (int i = 0; i < n; ++i) {
-    const auto& a = placed.grains[static_cast<std::size_t>(i)];
-    CHECK((a.position.array() >= a.radius).all());
-    CHECK((a.position.array() <= 1 - a.radius).all());
-    for (int j = 0; j < i; ++j) {
-      const auto& b = placed.grains[static_cast<std::size_t>(j)];
-      if ((a.position - b.position).norm() < a.radius + b.radius) FAIL("overlap");
-    }
+
+  REQUIRE(static_cast<int>(placed.grains.size()) == *scene.fills.front().count + 1);
+  CHECK(smallest_gap(placed.grains) >= 0);
+}
+
+/// Grains in the unit square or cube, each pair a count and a radius [m] of one fill.
+template <int Dim>
+Scene<Dim> crowd(const std::vector<std::pair<int, double>>& groups) {
+  Scene<Dim> scene;
+  scene.materials = {{"rock", 1000}};
+  for (const auto& [count, radius] : groups) {
+    Fill<Dim> fill;
+    fill.name = "r = " + shortest(radius);
+    fill.count = count;
+    fill.radius = radius;
+    fill.high.setOnes();
+    fill.arrangement = Arrangement::random;
+    scene.fills.push_back(fill);
   }
+  return scene;
+}
+
+template <int Dim>
+std::string refusal_of(const Scene<Dim>& scene) {
+  try {
+    place_grains(scene);
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "accepted";
 }
 
 }  // namespace
@@ -65,25 +104,28 @@ TEST_SUITE("placement") {
     check_disjoint_and_inside(box<3>(Arrangement::random, 400));
   }
 
-  TEST_CASE("a lattice fills from the bottom up, and without a count fills its region") {
-    Scene<2> scene = box<2>(Arrangement::lattice, 18);
+  TEST_CASE_TEMPLATE("a lattice fills from the bottom up, and without a count fills its region", S,
+                     Space<2>, Space<3>) {
+    constexpr int Dim = S::Dim;
+    auto scene = box<Dim>(Arrangement::lattice, Dim == 2 ? 18 : 162);
     scene.grains.clear();
 
     const auto some = place_grains(scene);
     scene.fills.front().count.reset();
     const auto all = place_grains(scene);
 
-    for (const auto& grain : some.grains) CHECK(grain.position.y() < 0.21);
-    CHECK(all.grains.size() == 81);
+    for (const auto& grain : some.grains) CHECK(grain.position[Dim - 1] < 0.21);
+    CHECK(all.grains.size() == (Dim == 2 ? 81 : 729));
     CHECK(all.grains.front().position == some.grains.front().position);
   }
 
-  TEST_CASE("same seed, same grains; another seed, others; groups do not disturb each other") {
-    Scene<2> scene = box<2>(Arrangement::random, 30);
+  TEST_CASE_TEMPLATE("same seed, same grains; another seed, others; groups do not disturb others",
+                     S, Space<2>, Space<3>) {
+    auto scene = box<S::Dim>(Arrangement::random, 30);
     const auto once = place_grains(scene);
 
     CHECK(place_grains(scene).grains[7].position == once.grains[7].position);
-    Scene<2> longer = scene;
+    auto longer = scene;
     longer.fills.push_back(scene.fills.front());
     longer.fills.back().count = 2;
     CHECK(place_grains(longer).grains[7].position == once.grains[7].position);
@@ -91,14 +133,16 @@ TEST_SUITE("placement") {
     CHECK(place_grains(scene).grains[7].position != once.grains[7].position);
   }
 
-  TEST_CASE("mass is density times area times depth, and random velocities have the speed asked") {
-    Scene<2> scene = box<2>(Arrangement::lattice, 4);
+  TEST_CASE_TEMPLATE("mass is density times volume, and random velocities have the speed asked", S,
+                     Space<2>, Space<3>) {
+    auto scene = box<S::Dim>(Arrangement::lattice, 4);
     scene.depth = 0.1;
     scene.fills.front().random_speed = 3;
 
     const auto placed = place_grains(scene);
 
-    CHECK(placed.grains[0].mass == doctest::Approx(1000 * 3.14159265 * 0.04 * 0.1));
+    const double volume = 3.14159265 * (S::Dim == 2 ? 0.04 * 0.1 : 4.0 / 3 * 0.008);
+    CHECK(placed.grains[0].mass == doctest::Approx(1000 * volume));
     CHECK(placed.grains[2].velocity.norm() == doctest::Approx(3));
     CHECK(placed.group[0] == -1);
     CHECK(placed.group[1] == 0);
@@ -115,14 +159,120 @@ TEST_SUITE("placement") {
     CHECK(place_grains(scene).grains.back().kind == 1);
   }
 
-  TEST_CASE("a region too small says how many grains it held") {
+  TEST_CASE("a region too small for a lattice says how many grains it held") {
     CHECK(message_of(with(kHeap, "count = 12", "count = 1000")) ==
           "s.toml:18: fill[0]: \"fill 1\": its region held 36 of the 1000 grains asked for");
-    const std::string crowd =
-        message_of(with(kHeap, "count = 12", "count = 1000\narrangement = \"random\""));
-    CHECK(crowd.substr(0, 46) == "s.toml:18: fill[0]: \"fill 1\": its region held ");
-    CHECK(message_of(with(kHeap, "[\"8 mm\", \"10 mm\"]", "[1, 2]")) ==
-          "s.toml:18: fill[0]: \"fill 1\": no grain fits into its region");
+    const std::string wide = with(kHeap, "[\"8 mm\", \"10 mm\"]", "[0.06, 0.06]");
+    const std::string no_fit = "s.toml:18: fill[0]: \"fill 1\": no grain fits into its region";
+    CHECK(message_of(wide) == no_fit);
+    CHECK(message_of(with(wide, "count = 12", "count = 1\narrangement = \"random\"")) == no_fit);
+  }
+
+  TEST_CASE_TEMPLATE("grains at random that find no place are pushed apart to no overlap at all", S,
+                     Space<2>, Space<3>) {
+    constexpr int Dim = S::Dim;
+    using Groups = std::vector<std::pair<int, double>>;
+    // Solid fractions of 0.78, 0.75 and of 0.40, 0.40, 0.23, 0.50, 0.46.
+    for (const Groups& groups : Dim == 2
+                                    ? std::vector<Groups>{{{620, 0.02}}, {{60, 0.05}, {400, 0.015}}}
+                                    : std::vector<Groups>{{{1484, 0.04}},
+                                                          {{3498, 0.03}},
+                                                          {{6944, 0.02}},
+                                                          {{207, 0.08}, {227, 0.04}},
+                                                          {{1484, 0.04}, {1747, 0.02}}}) {
+      CAPTURE(groups.front().first);
+      const auto scene = crowd<Dim>(groups);
+
+      const auto placed = place_grains(scene);
+
+      CHECK(smallest_gap(placed.grains) >= 0);
+      // Groups stay apart in the list, in order and complete.
+      std::size_t i = 0;
+      for (std::size_t k = 0; k < groups.size(); ++k) {
+        for (int c = 0; c < groups[k].first; ++c, ++i) {
+          REQUIRE(placed.group[i] == static_cast<int>(k));
+          REQUIRE(placed.grains[i].radius == groups[k].second);
+        }
+      }
+      CHECK(placed.grains.size() == i);
+    }
+  }
+
+  TEST_CASE_TEMPLATE("pushing is repeatable, and moves neither walls nor grains of elsewhere", S,
+                     Space<2>, Space<3>) {
+    constexpr int Dim = S::Dim;
+    auto scene = crowd<Dim>({{Dim == 2 ? 500 : 1000, Dim == 2 ? 0.02 : 0.04}});
+    PlacedGrain<Dim> by_hand;
+    by_hand.position.setConstant(0.4);
+    by_hand.radius = 0.15;
+    scene.grains = {by_hand};
+    scene.walls = {
+        Wall<Dim>::half_space("ramp", Vec<Dim>::Zero(), Vec<Dim>::UnitX() + Vec<Dim>::UnitY())};
+
+    const auto once = place_grains(scene);
+    const auto again = place_grains(scene);
+
+    CHECK(smallest_gap(once.grains) >= 0);
+    CHECK(once.grains[0].position == by_hand.position);
+    CHECK(!once.grains[0].pinned);
+    bool same = true;
+    double nearest = 1;
+    for (std::size_t i = 0; i < once.grains.size(); ++i) {
+      same = same && once.grains[i].position == again.grains[i].position;
+      const auto& grain = once.grains[i];
+      nearest = std::min(nearest, scene.walls[0].foot(grain.position).distance - grain.radius);
+    }
+    CHECK(same);
+    CHECK(nearest >= 0);
+  }
+
+  TEST_CASE_TEMPLATE("a round container is filled at random up to its wall", S, Space<2>,
+                     Space<3>) {
+    constexpr int Dim = S::Dim;
+    auto scene = crowd<Dim>({{Dim == 2 ? 450 : 1050, Dim == 2 ? 0.02 : 0.04}});
+    Vec<Dim> axis = Vec<Dim>::Zero();
+    if (Dim == 3) axis[2] = 1;
+    scene.walls = {Wall<Dim>::cylinder("drum", Vec<Dim>::Constant(0.5), axis, 0.5)};
+
+    const auto placed = place_grains(scene);
+
+    CHECK(smallest_gap(placed.grains) >= 0);
+    double nearest = 1;
+    for (const auto& grain : placed.grains) {
+      nearest = std::min(nearest, scene.walls[0].foot(grain.position).distance - grain.radius);
+    }
+    CHECK(nearest >= 0);
+  }
+
+  TEST_CASE_TEMPLATE("a wall may take most of a region from the grains", S, Space<2>, Space<3>) {
+    constexpr int Dim = S::Dim;
+    auto scene = crowd<Dim>({{Dim == 2 ? 84 : 1900, 0.02}});
+    scene.walls = {Wall<Dim>::half_space("cliff", 0.85 * Vec<Dim>::UnitX(), Vec<Dim>::UnitX())};
+
+    const auto placed = place_grains(scene);
+
+    CHECK(smallest_gap(placed.grains) >= 0);
+    double nearest = 1;
+    for (const auto& grain : placed.grains) {
+      nearest = std::min(nearest, grain.position[0] - 0.85 - grain.radius);
+    }
+    CHECK(nearest >= 0);
+  }
+
+  TEST_CASE("more grains than a region can hold are refused, with the fraction and the limit") {
+    CHECK(refusal_of(crowd<3>({{2836, 0.04}})) ==
+          "fill[0]: \"r = 0.04\": a solid fraction of 0.76 in its region; equal spheres reach at "
+          "most 0.74");
+    CHECK(refusal_of(crowd<2>({{725, 0.02}})) ==
+          "fill[0]: \"r = 0.02\": a solid fraction of 0.911 in its region; equal discs reach at "
+          "most 0.907");
+    // The second fill of a region counts the first one in.
+    CHECK(refusal_of(crowd<2>({{250, 0.03}, {250, 0.02}})) ==
+          "fill[1]: \"r = 0.02\": a solid fraction of 1.021 in its region; discs reach at most 1");
+    const std::string jam = refusal_of(crowd<3>({{327, 0.08}}));
+    CHECK(jam.find("fill[0]: \"r = 0.08\": a solid fraction of 0.701 in its region; after 3000 "
+                   "pushes grains still overlap by ") == 0);
+    CHECK(jam.find("equal spheres at random reach about 0.64)") != std::string::npos);
   }
 
   TEST_CASE("grains that overlap at the start are named, with the overlap") {

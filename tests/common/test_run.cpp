@@ -3,6 +3,7 @@
 #include <lagrain/output.hpp>
 
 #include "support/scene_text.hpp"
+#include "support/space.hpp"
 
 #include <doctest/doctest.h>
 
@@ -35,15 +36,22 @@ struct Folder {
 
 const std::string kFrictionless = without(with(kHeap, "\"elastic\"", "\"none\""), "friction = 0.4");
 
+template <int Dim>
+Scene<Dim> scene_of(const std::string& text) {
+  return parse_scene<Dim>(in_space<Dim>(text), "s.toml");
+}
+
+template <int Dim>
 std::string trajectory(const std::string& text) {
-  const auto run = make_run(parse_scene<2>(text, "s.toml"));
+  const auto run = make_run(scene_of<Dim>(text));
   run->advance_to(run->scene().duration);
   return frame_csv(*run);
 }
 
+template <int Dim>
 std::string error_of(const std::string& text) {
   try {
-    make_run(parse_scene<2>(text, "s.toml"));
+    make_run(scene_of<Dim>(text));
   } catch (const SceneError& error) {
     return error.what();
   }
@@ -53,7 +61,9 @@ std::string error_of(const std::string& text) {
 }  // namespace
 
 TEST_SUITE("run") {
-  TEST_CASE("every model that a scene can name runs, with the same bits from two neighbourhoods") {
+  TEST_CASE_TEMPLATE(
+      "every model that a scene can name runs, with the same bits from two neighbourhoods", S,
+      Space<2>, Space<3>) {
     const std::string conservative = with(kFrictionless, "restitution = 0.5", "restitution = 1");
     for (const std::string& text :
          {kHeap, kFrictionless, with(kHeap, "\"elastic\"", "\"viscous\""),
@@ -62,39 +72,14 @@ TEST_SUITE("run") {
           with(with(kHeap, "\"linear\"", "\"hertz\""), "stiffness = \"1e7 N/m\"",
                "modulus = \"2 GPa\"\nimpact_speed = 2")}) {
       CAPTURE(text);
-      CHECK(trajectory(text) == trajectory(with(text, "linked cells", "all pairs")));
+      CHECK(trajectory<S::Dim>(text) ==
+            trajectory<S::Dim>(with(text, "linked cells", "all pairs")));
     }
   }
 
-  TEST_CASE("spheres run through the same code") {
-    const auto run = make_run(parse_scene<3>(R"(dimension = 3
-duration = 0.5
-gravity = [0, 0, -10]
-normal = "linear"
-friction = "elastic"
-neighbourhood = "linked cells"
-[law]
-stiffness = 1e5
-restitution = 0.5
-friction = 0.5
-[materials.rock]
-density = 2500
-[[grain]]
-position = [0, 0, 0.1]
-radius = 0.1
-[[wall]]
-point = [0, 0, 0]
-normal = [0, 0, 1]
-)",
-                                             "s.toml"));
-    run->advance_to(0.5);
-
-    CHECK(run->walls()[0].force.z() == doctest::Approx(-10 * run->masses()[0]).epsilon(0.01));
-    CHECK(run->size().memory_per_pair == 24);
-  }
-
-  TEST_CASE("the time step is the stated fraction of the shortest contact time") {
-    const auto run = make_run(parse_scene<2>(kHeap, "s.toml"));
+  TEST_CASE_TEMPLATE("the time step is the stated fraction of the shortest contact time", S,
+                     Space<2>, Space<3>) {
+    const auto run = make_run(scene_of<S::Dim>(kHeap));
 
     CHECK(run->time_step() == doctest::Approx(run->time_scales().contact / 25));
     const auto steps = static_cast<double>(run->steps_planned());
@@ -102,33 +87,36 @@ normal = [0, 0, 1]
     CHECK((steps - 1) * run->time_step() < 0.02);
   }
 
-  TEST_CASE("too large a time step is an error that names the safe one") {
-    const std::string message = error_of(with(kHeap, "1/25 contact", "1/5 contact"));
+  TEST_CASE_TEMPLATE("too large a time step is an error that names the safe one", S, Space<2>,
+                     Space<3>) {
+    const std::string message = error_of<S::Dim>(with(kHeap, "1/25 contact", "1/5 contact"));
 
     CHECK(message.substr(0, 21) == "s.toml:5: time_step: ");
     const auto at = message.find("allows at most ");
     REQUIRE(at != std::string::npos);
     const std::string safe = message.substr(at + 15, message.find(" s (\"", at) - at - 15);
-    CHECK(error_of(with(kHeap, "\"1/25 contact\"", safe)) == "accepted");
+    CHECK(error_of<S::Dim>(with(kHeap, "\"1/25 contact\"", safe)) == "accepted");
   }
 
-  TEST_CASE("a frictionless run carries neither spin nor memory") {
-    const auto without_friction = make_run(parse_scene<2>(kFrictionless, "s.toml"));
-    const auto with_friction = make_run(parse_scene<2>(kHeap, "s.toml"));
+  TEST_CASE_TEMPLATE("a frictionless run carries neither spin nor memory", S, Space<2>, Space<3>) {
+    const auto without_friction = make_run(scene_of<S::Dim>(kFrictionless));
+    const auto with_friction = make_run(scene_of<S::Dim>(kHeap));
 
     CHECK(without_friction->spins() == nullptr);
     CHECK(without_friction->size().spin_per_grain == 0);
     CHECK(without_friction->size().memory_per_pair == 0);
     CHECK(without_friction->size().per_near_pair == sizeof(Pair));
     CHECK(with_friction->spins() != nullptr);
-    CHECK(with_friction->size().spin_per_grain == 24);
-    CHECK(with_friction->size().memory_per_pair == 16);
+    CHECK(with_friction->size().spin_per_grain == 8 * (2 * kSpinDim<S::Dim> + 1));
+    CHECK(with_friction->size().memory_per_pair == 8 * S::Dim);
     CHECK(explain(*without_friction).find("for spin") == std::string::npos);
-    CHECK(explain(*with_friction).find("24 of them for spin") != std::string::npos);
+    CHECK(
+        explain(*with_friction).find(S::Dim == 2 ? "24 of them for spin" : "56 of them for spin") !=
+        std::string::npos);
   }
 
-  TEST_CASE("an audited run checks every step and misses nothing") {
-    const auto run = make_run(parse_scene<2>(with(kHeap, "seed = 5", "audit = true"), "s.toml"));
+  TEST_CASE_TEMPLATE("an audited run checks every step and misses nothing", S, Space<2>, Space<3>) {
+    const auto run = make_run(scene_of<S::Dim>(with(kHeap, "seed = 5", "audit = true")));
     run->advance_to(0.02);
 
     CHECK(run->audit().checks() == run->steps() + 1);
@@ -136,11 +124,12 @@ normal = [0, 0, 1]
     CHECK(run->audit().missed() == 0);
   }
 
-  TEST_CASE("contacts push their grains apart, and walls feel the sum") {
-    const auto run = make_run(parse_scene<2>(kHeap, "s.toml"));
+  TEST_CASE_TEMPLATE("contacts push their grains apart, and walls feel the sum", S, Space<2>,
+                     Space<3>) {
+    const auto run = make_run(scene_of<S::Dim>(kHeap));
     run->advance_to(0.02);
 
-    Vec<2> on_floor = Vec<2>::Zero();
+    Vec<S::Dim> on_floor = Vec<S::Dim>::Zero();
     for (const auto& contact : run->contacts()) {
       CHECK(contact.force.dot(contact.normal) >= 0);
       CHECK((contact.j < 0) == (contact.wall >= 0));
@@ -150,17 +139,18 @@ normal = [0, 0, 1]
     CHECK((on_floor - run->walls()[0].force).norm() < 1e-2 * on_floor.norm());
   }
 
-  TEST_CASE("a run folder holds the run, and its scene gives the same run bit for bit") {
+  TEST_CASE_TEMPLATE("a run folder holds the run, and its scene gives the same run bit for bit", S,
+                     Space<2>, Space<3>) {
     const Folder first;
     const Folder second;
     const std::string text =
         kHeap +
         "[[pair]]\nbetween = [\"rock\", \"gravel\"]\nfriction = 0.1\n[output]\nframes_every "
         "= \"5 ms\"\ncontacts = true\n";
-    const auto once = make_run(parse_scene<2>(text, "s.toml"));
+    const auto once = make_run(scene_of<S::Dim>(text));
     REQUIRE(record(*once, {first.path, {}, {}}));
 
-    const auto again = make_run(read_scene<2>(first.path / "scene.toml"));
+    const auto again = make_run(read_scene<S::Dim>(first.path / "scene.toml"));
     REQUIRE(record(*again, {second.path, {}, {}}));
 
     int compared = 0;
@@ -172,15 +162,23 @@ normal = [0, 0, 1]
       ++compared;
     }
     CHECK(compared == 3 + 2 * 5);
-    CHECK(content(first.path / "frames/0000.csv").substr(0, 73) ==
-          "id[-],x[m],y[m],vx[m/s],vy[m/s],omega[rad/s],radius[m],material[-]\n0,0.05");
+    const std::string frame = content(first.path / "frames/0000.csv");
+    CHECK(frame.substr(0, frame.find('\n')) ==
+          (S::Dim == 2 ? "id[-],x[m],y[m],vx[m/s],vy[m/s],omega[rad/s],radius[m],material[-]"
+                       : "id[-],x[m],y[m],z[m],vx[m/s],vy[m/s],vz[m/s],omega_x[rad/s],"
+                         "omega_y[rad/s],omega_z[rad/s],radius[m],material[-]"));
+    CHECK(frame.substr(frame.find('\n'), 7) == "\n0,0.05");
+    const std::string contacts = content(first.path / "contacts/0004.csv");
+    CHECK(contacts.substr(0, contacts.find('\n')) ==
+          (S::Dim == 2 ? "i[-],j[-],overlap[m],nx[-],ny[-],fx[N],fy[N]"
+                       : "i[-],j[-],overlap[m],nx[-],ny[-],nz[-],fx[N],fy[N],fz[N]"));
     CHECK(content(first.path / "series.csv").substr(0, 18) == "time[s],kinetic[J]");
     CHECK(content(first.path / "summary.txt").find("finished") != std::string::npos);
   }
 
-  TEST_CASE("a run that is stopped keeps what was computed") {
+  TEST_CASE_TEMPLATE("a run that is stopped keeps what was computed", S, Space<2>, Space<3>) {
     const Folder folder;
-    const auto run = make_run(parse_scene<2>(kHeap, "s.toml"));
+    const auto run = make_run(scene_of<S::Dim>(kHeap));
     int steps = 0;
 
     const bool finished = record(*run, {folder.path, [&] { return ++steps == 30; }, {}});
@@ -191,12 +189,12 @@ normal = [0, 0, 1]
     CHECK(content(folder.path / "summary.txt").find("stopped by the user") != std::string::npos);
   }
 
-  TEST_CASE("a run that breaks off says who, when and why, and keeps the last good state") {
+  TEST_CASE_TEMPLATE("a run that breaks off says who, when and why, and keeps the last good state",
+                     S, Space<2>, Space<3>) {
     const Folder folder;
     const auto run = make_run(
-        parse_scene<2>(with(with(kHeap, "velocity = [0, \"-2 m/s\"]", "velocity = [0, -400]"),
-                            "seed = 5", "largest_overlap = 0.2"),
-                       "s.toml"));
+        scene_of<S::Dim>(with(with(kHeap, "velocity = [0, \"-2 m/s\"]", "velocity = [0, -400]"),
+                              "seed = 5", "largest_overlap = 0.2")));
     std::string message;
 
     try {
@@ -214,28 +212,51 @@ normal = [0, 0, 1]
     CHECK(content(folder.path / "summary.txt").find("broke off") != std::string::npos);
   }
 
-  TEST_CASE("a folder that cannot be written is an error before the first step") {
+  TEST_CASE_TEMPLATE("a folder that cannot be written is an error before the first step", S,
+                     Space<2>, Space<3>) {
     const Folder folder;
     fs::create_directories(folder.path);
     std::ofstream(folder.path / "file") << "x";
-    const auto run = make_run(parse_scene<2>(kHeap, "s.toml"));
+    const auto run = make_run(scene_of<S::Dim>(kHeap));
 
     CHECK_THROWS_AS(record(*run, {folder.path / "file" / "run", {}, {}}), SceneError);
     CHECK_THROWS_AS(record(*run, {folder.path / "file", {}, {}}), SceneError);
     CHECK(run->steps() == 0);
   }
 
-  TEST_CASE("a second run into the same folder leaves no frame of the first") {
+  TEST_CASE_TEMPLATE("a second run into the same folder leaves no frame of the first", S, Space<2>,
+                     Space<3>) {
     const Folder folder;
     const std::string often = kHeap + "[output]\nframes_every = \"1 ms\"\n";
-    record(*make_run(parse_scene<2>(often, "s.toml")), {folder.path, {}, {}});
+    record(*make_run(scene_of<S::Dim>(often)), {folder.path, {}, {}});
     REQUIRE(fs::exists(folder.path / "frames/0010.csv"));
     std::ofstream(folder.path / "frames/notes.csv") << "mine";
 
-    record(*make_run(parse_scene<2>(kHeap, "s.toml")), {folder.path, {}, {}});
+    record(*make_run(scene_of<S::Dim>(kHeap)), {folder.path, {}, {}});
 
     CHECK(!fs::exists(folder.path / "frames/0010.csv"));
     CHECK(fs::exists(folder.path / "frames/0001.csv"));
     CHECK(fs::exists(folder.path / "frames/notes.csv"));
+  }
+
+  TEST_CASE_TEMPLATE("the series tells where a moving wall is, and what presses on it", S, Space<2>,
+                     Space<3>) {
+    const Folder folder;
+    const auto run =
+        make_run(scene_of<S::Dim>(
+            kHeap + "[[wall]]\nname = \"piston\"\nmaterial = \"rock\"\npoint = [0, 0.5]\nnormal "
+                    "= [0, -1]\nmotion = { type = \"piston\", mass = 2, load = [0, -20], start "
+                    "= \"10 ms\" }\n"));
+    record(*run, {folder.path, {}, {}});
+
+    const std::string series = content(folder.path / "series.csv");
+    const std::string columns = S::Dim == 2 ? "piston.fx[N],piston.fy[N],piston.x[m],piston.y[m]"
+                                            : "piston.fx[N],piston.fy[N],piston.fz[N],piston.x[m],"
+                                              "piston.y[m],piston.z[m]";
+    CHECK(series.substr(0, series.find('\n')).find("," + columns) != std::string::npos);
+    const std::string last = series.substr(series.rfind(',') + 1);
+    // Ten milliseconds of free fall, to a step.
+    CHECK(std::stod(last) == doctest::Approx(0.5 - 0.5 * 10 * 1e-4).epsilon(1e-4));
+    CHECK(std::stod(last) == run->walls().back().point[S::Dim - 1]);
   }
 }

@@ -3,9 +3,11 @@
 #include <lagrain/check.hpp>
 
 #include "support/scene_text.hpp"
+#include "support/space.hpp"
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -17,9 +19,10 @@ using namespace lagrain::test;
 
 namespace {
 
+template <int Dim = 2>
 std::string message_of(const std::string& text) {
   try {
-    parse_scene<2>(text, "s.toml");
+    parse_scene<Dim>(text, "s.toml");
   } catch (const SceneError& error) {
     return error.what();
   }
@@ -175,11 +178,12 @@ TEST_SUITE("scene") {
                          (here + ": expected a scene file, got a folder").c_str(), SceneError);
   }
 
-  TEST_CASE("walls are half-planes or segments, with one of three motions") {
+  TEST_CASE("walls are half-planes, segments or circles, with one of three motions") {
     const auto wall = [](const std::string& more) { return message_of(kHeap + more); };
 
     CHECK(wall("[[wall]]\nmaterial = \"rock\"\n") ==
-          "s.toml:43: wall[2].point: missing; expected point and normal, or from and to");
+          "s.toml:43: wall[2].point: missing; expected point and normal, from and to, or point and "
+          "radius");
     CHECK(wall("point = [0, 0]\n") == "s.toml:38: wall[1].normal: missing; expected [x, y]");
     CHECK(wall("motion = { type = \"piston\", mass = 0, load = [0, 1] }\n") ==
           "s.toml:43: wall[1].motion.mass: expected a positive mass [kg], got 0");
@@ -193,15 +197,98 @@ TEST_SUITE("scene") {
     CHECK(wall("motion = { type = \"walk\" }\n") ==
           "s.toml:43: wall[1].motion.type: expected \"steady\", \"shake\" or \"piston\", got "
           "\"walk\"");
-    CHECK(wall("[[wall]]\nname = \"floor\"\n") == "s.toml:43: wall[2].name: a second \"floor\"");
+    CHECK(wall("motion = { type = \"piston\", mass = 1, load = [0, 1], stop = 1 }\n") ==
+          "s.toml:43: wall[1].motion.stop: a piston has none: grains stop it; remove this line");
+    const std::string rock = "[[wall]]\nmaterial = \"rock\"\n";
+    CHECK(wall(rock + "point = [0, 0]\nnormal = [0, 1]\nname = \"floor\"\n") ==
+          "s.toml:43: wall[2].name: a second \"floor\"");
+    CHECK(wall(rock + "point = [0, 0]\nradius = 0\n") ==
+          "s.toml:46: wall[2].radius: expected a positive length [m], got 0");
+    CHECK(wall(rock + "radius = 1\n") == "s.toml:43: wall[2].point: missing; expected [x, y]");
+    CHECK(wall(rock + "radius = 1\npoint = [0, 0]\naxis = [0, 0, 1]\n") ==
+          "s.toml:47: wall[2].axis: a circle has none; remove this line");
+    CHECK(wall(rock + "radius = 1\npoint = [0, 0]\nnormal = [0, 1]\n") ==
+          "s.toml:47: wall[2].normal: a round wall has point and radius; remove this line");
+    CHECK(wall(rock + "point = [0, 0]\nnormal = [0, 1]\naxis = [0, 1]\n") ==
+          "s.toml:47: wall[2].axis: an axis belongs to a round wall, with point and radius");
+  }
+
+  TEST_CASE("a round wall in space has an axis") {
+    const auto wall = [](const std::string& more) {
+      return message_of<3>(in_space<3>(kHeap) + "[[wall]]\nname = \"drum\"\nmaterial = \"rock\"\n" +
+                           "point = [1, 2, 3]\n" + more);
+    };
+
+    CHECK(wall("radius = 2\n") == "s.toml:43: wall[2].axis: missing; expected [x, y, z]");
+    CHECK(wall("radius = 2\naxis = [0, 0, 0]\n") ==
+          "s.toml:48: wall[2].axis: expected a direction, got [0, 0, 0]");
+    CHECK(wall("radius = 2\naxis = [0, 0, 1]\nfrom = [0, 0, 0]\n") ==
+          "s.toml:49: wall[2].from: a round wall has point, axis and radius; remove this line");
+    CHECK(wall("radius = \"20 cm\"\naxis = [0, 0, 2]\n") == "accepted");
+  }
+
+  TEST_CASE_TEMPLATE("a box is its sides as walls, but for the open ones", S, Space<2>, Space<3>) {
+    constexpr int Dim = S::Dim;
+    const std::string text = in_space<Dim>(
+        kHeap +
+        "[[box]]\nname = \"pit\"\nmaterial = \"gravel\"\nlow = [-1, -2]\nhigh = [3, 4]\nopen = "
+        "[\"top\"]\n"
+        "motion = { type = \"shake\", amplitude = [0, 0.1], frequency = 3, start = 1, stop = 2 "
+        "}\n");
+    const std::vector<std::string> names =
+        Dim == 2 ? std::vector<std::string>{"pit left", "pit right", "pit bottom"}
+                 : std::vector<std::string>{"pit left", "pit right", "pit front", "pit back",
+                                            "pit bottom"};
+
+    const auto scene = parse_scene<Dim>(text, "s.toml");
+
+    REQUIRE(scene.walls.size() == 2 + names.size());
+    const Vec<Dim> inside = Vec<Dim>::Constant(1);
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const Wall<Dim>& wall = scene.walls[2 + k];
+      CHECK(wall.name == names[k]);
+      CHECK(wall.kind == 1);
+      const auto d = static_cast<Eigen::Index>(k / 2);
+      const double at = k % 2 == 0 ? (d == Dim - 1 ? -2 : -1) : 3;
+      CHECK(wall.foot(inside).distance == std::abs(1 - at));
+      CHECK(wall.foot(inside).normal == (k % 2 == 0 ? 1 : -1) * Vec<Dim>::Unit(d));
+      const auto& shake = std::get<Shake<Dim>>(wall.motion);
+      CHECK(shake.amplitude == 0.1 * Vec<Dim>::Unit(Dim - 1));
+      CHECK(shake.stop == 2);
+    }
+    // A resolved scene lists the sides.
+    CHECK(to_toml(parse_scene<Dim>(to_toml(scene), "again.toml")) == to_toml(scene));
+
+    const auto box = [](const std::string& more) {
+      return message_of<Dim>(
+          in_space<Dim>(kHeap + "[[box]]\nmaterial = \"rock\"\nlow = [0, 0]\n" + more));
+    };
+    CHECK(box("high = [1, 1]\nopen = [\"topp\"]\n") ==
+          std::string(
+              "s.toml:47: box[0].open: no side \"topp\" (did you mean \"top\"?); expected some "
+              "of left, right, ") +
+              (Dim == 3 ? "front, back, " : "") + "bottom, top");
+    CHECK(box("high = [1, 1]\nopen = \"top\"\n") ==
+          "s.toml:47: box[0].open: expected a list of sides, got \"top\"");
+    CHECK(box("high = [1, 0]\n") ==
+          "s.toml:43: box[0].high: expected low below high in every direction");
+    CHECK(box("high = [1, 1]\n") == "s.toml:43: box[0].name: a second \"left\"");
+    CHECK(box("high = [1, 1]\nname = \"b\"\nopenn = []\n") ==
+          "s.toml:48: box[0].openn: unknown key (did you mean \"open\"?)");
+    CHECK(box("high = [1, 1]\nname = \"b\"\nmotion = { type = \"piston\", mass = 1, load = [0, 1] "
+              "}\n") ==
+          "s.toml:48: box[0].motion: each side would move for itself; leave the side open and give "
+          "the piston as a [[wall]]");
   }
 
   TEST_CASE("a resolved scene reads back as itself, every default filled in") {
     const std::string text =
-        kHeap +
+        with(kHeap, "gravity = [0, ", "gravity = [-0.0, ") +
         "motion = { type = \"shake\", amplitude = [0.1, 0.3], frequency = 7, stop = 3 }\n"
         "[[wall]]\nname = \"a \\\"slope\\\", 30°\"\nmaterial = \"gravel\"\npoint = [0.1, 0.7]\n"
         "normal = [0.3, 0.7]\n"
+        "[[wall]]\nname = \"drum\"\nmaterial = \"rock\"\npoint = [0.1, 0.2]\nradius = 0.7\n"
+        "motion = { type = \"piston\", mass = 2, load = [0, -3], start = 0.1 }\n"
         "[[pair]]\nbetween = [\"rock\", \"gravel\"]\nfriction = 0.7\n"
         "[[fill]]\nmaterial = \"rock\"\nradius = { values = [0.001, 0.003], weights = [1, 2] }\n"
         "region = { low = [1, 1], high = [1.1, 1e22] }\nvelocity = { random = 3 }\ncount = 3\n";
@@ -216,9 +303,12 @@ TEST_SUITE("scene") {
           std::get<WallSegment<2>>(once.walls.at(1).shape).along);
     CHECK(std::get<HalfSpace<2>>(twice.walls.at(2).shape).normal ==
           std::get<HalfSpace<2>>(once.walls.at(2).shape).normal);
+    CHECK(std::get<Cylinder<2>>(twice.walls.at(3).shape).radius == 0.7);
+    CHECK(std::get<Piston<2>>(twice.walls.at(3).motion).start == 0.1);
     CHECK(twice.walls.at(2).name == "a \"slope\", 30°");
     CHECK(twice.pairs.at(0).law.friction == 0.7);
     CHECK(twice.pairs.at(0).law.stiffness == 1e7);
+    CHECK(std::signbit(twice.gravity[0]));
     CHECK(twice.time_step.fraction_of_contact == once.time_step.fraction_of_contact);
     CHECK(resolved.find("largest_overlap = 0.3") != std::string::npos);
   }
@@ -238,11 +328,18 @@ density = 7800
 [[grain]]
 position = [0, 0, 1]
 radius = 0.1
+[[wall]]
+point = [0, 0, 0.3]
+axis = [0.1, 0.2, 0.7]
+radius = "40 cm"
 )";
     const Scene<3> s = parse_scene<3>(text, "s.toml");
 
     CHECK(s.gravity == Vec<3>(0, 0, -9.81));
     CHECK(to_toml(parse_scene<3>(to_toml(s), "s.toml")) == to_toml(s));
+    const auto& drum = std::get<Cylinder<3>>(s.walls.at(0).shape);
+    CHECK(drum.radius == 0.4);
+    CHECK(drum.axis.norm() == doctest::Approx(1));
     CHECK_THROWS_WITH_AS(parse_scene<2>(text, "s.toml"), "s.toml:1: dimension: expected 2, got 3",
                          SceneError);
   }

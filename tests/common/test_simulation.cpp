@@ -252,24 +252,27 @@ TEST_SUITE("simulation") {
     CHECK(failure.find("t = ") != std::string::npos);
   }
 
-  TEST_CASE("a kind that the table of laws lacks is refused") {
+  TEST_CASE_TEMPLATE("a kind that the table of laws lacks is refused", C, Case<2, LinearSpring>,
+                     Case<3, LinearSpring>) {
+    constexpr int Dim = C::Dim;
     const LawTable<LinearSpring> laws(make_law<LinearSpring>({}), 2);
-    Setting<2> setting;
+    Setting<Dim> setting;
     setting.time_step = 1e-5;
-    Grain<2> odd = unit<2>(0);
+    Grain<Dim> odd = unit<Dim>(0);
     odd.kind = 2;
-    auto wall = Wall<2>::half_space("floor", Vec<2>(0, -5), up<2>());
+    auto wall = Wall<Dim>::half_space("floor", -5 * up<Dim>(), up<Dim>());
     wall.kind = 2;
-    const auto build = [&](const Grain<2>& g, const LawTable<LinearSpring>& table,
-                           const std::vector<Wall<2>>& walls) {
-      return Sim<2, LinearSpring>(make_grains<2, LinearSpring::needs>({g}), table, walls, setting);
+    const auto build = [&](const Grain<Dim>& g, const LawTable<LinearSpring>& table,
+                           const std::vector<Wall<Dim>>& walls) {
+      return Sim<Dim, LinearSpring>(make_grains<Dim, LinearSpring::needs>({g}), table, walls,
+                                    setting);
     };
 
-    CHECK_NOTHROW(build(unit<2>(0), laws, {}));
+    CHECK_NOTHROW(build(unit<Dim>(0), laws, {}));
     CHECK_THROWS_WITH_AS(build(odd, laws, {}), doctest::Contains("grain 0 is of kind 2"),
                          ContractError);
-    CHECK_THROWS_WITH_AS(build(unit<2>(0), laws, {wall}), doctest::Contains("wall floor"),
+    CHECK_THROWS_WITH_AS(build(unit<Dim>(0), laws, {wall}), doctest::Contains("wall floor"),
                          ContractError);
-    CHECK_THROWS_AS(build(unit<2>(0), {}, {}), ContractError);
+    CHECK_THROWS_AS(build(unit<Dim>(0), {}, {}), ContractError);
   }
 }

@@ -34,6 +34,13 @@ TEST_SUITE("vec") {
     CHECK(cross(SpinVec<3>(1, 0, 0), Vec<3>(0, 1, 0)) == Vec<3>(0, 0, 1));
   }
 
+  TEST_CASE("a spin's part about a direction is none in the plane, and its projection in space") {
+    CHECK(about(Vec<2>(0.6, 0.8), SpinVec<2>(3.0))[0] == 0);
+    CHECK(about(Vec<3>(0, 0, 1), SpinVec<3>(1, 2, 3)) == Vec<3>(0, 0, 3));
+    CHECK((about(Vec<3>(0.6, 0, 0.8), SpinVec<3>(1, 2, 3)) - 3 * Vec<3>(0.6, 0, 0.8)).norm() <
+          1e-15);
+  }
+
   TEST_CASE_TEMPLATE("a turning body's power is torque times spin", D,
                      std::integral_constant<int, 2>, std::integral_constant<int, 3>) {
     constexpr int Dim = D::value;

@@ -4,6 +4,7 @@
 #include <lagrain/observe.hpp>
 
 #include <support/scenes.hpp>
+#include <support/space.hpp>
 #include <support/tolerance.hpp>
 
 #include <doctest/doctest.h>
@@ -16,17 +17,30 @@ using namespace lagrain::test;
 
 namespace {
 
-template <int D>
-struct Space {
-  static constexpr int Dim = D;
-};
-
 template <int Dim>
 Grain<Dim> grain_at(double height) {
   Grain<Dim> g;
   g.radius = g.mass = 1;
   g.position = height * up<Dim>();
   return g;
+}
+
+/// The axis of a lying drum, and the way across it: along() in the plane.
+template <int Dim>
+Vec<Dim> drum_axis() {
+  if constexpr (Dim == 2) {
+    return Vec<2>::Zero();
+  } else {
+    return {0.6, 0.8, 0};
+  }
+}
+template <int Dim>
+Vec<Dim> across_drum() {
+  if constexpr (Dim == 2) {
+    return along<2>();
+  } else {
+    return {0.8, -0.6, 0};
+  }
 }
 
 template <class S>
@@ -72,6 +86,94 @@ TEST_SUITE("walls") {
     CHECK(axial.foot(along<Dim>()).normal.dot(along<Dim>()) == 0);
   }
 
+  TEST_CASE_TEMPLATE("a round wall is measured from its axis, and pushes towards it", S, Space<2>,
+                     Space<3>) {
+    constexpr int Dim = S::Dim;
+    const Vec<Dim> middle = 0.3 * oblique<Dim>();
+    const Vec<Dim> t = across_drum<Dim>();
+    const Vec<Dim> axis = drum_axis<Dim>();
+    const auto wall = Wall<Dim>::cylinder("w", middle, 5 * axis, 2);  // the axis is made unit
+    const auto check = [&](const Vec<Dim>& x, double distance, const Vec<Dim>& normal) {
+      CHECK(std::abs(wall.foot(x).distance - distance) < 1e-14);
+      CHECK((wall.foot(x).normal - normal).norm() < 1e-14);
+    };
+
+    check(middle + 1.5 * t, 0.5, -t);
+    check(middle - 1.5 * t + 40 * axis, 0.5, t);
+    check(middle + 1.5 * up<Dim>() - 7 * axis, 0.5, -up<Dim>());
+    check(middle + 2.5 * t, -0.5, -t);  // outside
+    // On the axis, some normal at a right angle to it.
+    const auto foot = wall.foot(middle);
+    CHECK(foot.distance == 2);
+    CHECK(foot.normal.norm() == doctest::Approx(1));
+    CHECK(std::abs(foot.normal.dot(axis)) < 1e-15);
+  }
+
+  TEST_CASE_TEMPLATE("a grain that slides in a drum is a pendulum", C, Case<2, LinearSpring>,
+                     Case<3, LinearSpring>) {
+    constexpr int Dim = C::Dim;
+    const auto law = make_law<LinearSpring>({.stiffness = 1e6});
+    const double angle = 0.1;
+    const double length = 2 + 10 * std::cos(angle) / 1e6;  // radius 3 less 1, and the overlap
+    auto g = grain_at<Dim>(0);
+    g.position = length * (std::sin(angle) * across_drum<Dim>() - std::cos(angle) * up<Dim>());
+    auto sim = make_sim<Dim>(std::vector<Grain<Dim>>{g}, law,
+                             {Wall<Dim>::cylinder("drum", Vec<Dim>::Zero(), drum_axis<Dim>(), 3)},
+                             1, -10 * up<Dim>());
+    const auto place = [&] { return sim.grains().position.col(0).dot(across_drum<Dim>()); };
+    std::vector<double> crossings;
+    while (crossings.size() < 2 && sim.time() < 10) {
+      const double before = place();
+      sim.step();
+      if (before * place() > 0) continue;
+      crossings.push_back(sim.time() - sim.setting().time_step * place() / (place() - before));
+    }
+
+    REQUIRE(crossings.size() == 2);
+    const double period = 2 * std::numbers::pi * std::sqrt(length / 10) *
+                          (1 + angle * angle / 16 + 11 * std::pow(angle, 4) / 3072);
+    // The spring gives by m v^2 / (k length), 5e-8; the crossing is known to (dt / period)^2.
+    CHECK(relative_error(crossings[1] - crossings[0], 0.5 * period) < 1e-6);
+    CHECK(relative_error(crossings[0], 0.25 * period) < 1e-6);
+  }
+
+  TEST_CASE_TEMPLATE("no contact with a round wall is missed, and nobody gets out", C,
+                     Case<2, LinearSpring>, Case<3, LinearSpring>, Case<2, FrictionalSpring>,
+                     Case<3, FrictionalSpring>) {
+    constexpr int Dim = C::Dim;
+    Random random(12);
+    const auto packed = lattice<Dim>({.count = 60, .speed = 3, .spin = 2}, random);
+    const Vec<Dim> middle = 0.5 * (packed.low + packed.high);
+    // Upright in space, closed by two planes.
+    const Vec<Dim> axis = Dim == 2 ? Vec<Dim>::Zero() : up<Dim>();
+    const double radius = 0.5 * std::sqrt(2.0) * (packed.high - packed.low)[0];
+    std::vector<Wall<Dim>> walls{Wall<Dim>::cylinder("drum", middle, axis, radius)};
+    if (Dim == 3) {
+      walls.push_back(Wall<Dim>::half_space("floor", packed.low, up<Dim>()));
+      walls.push_back(Wall<Dim>::half_space("lid", packed.high, -up<Dim>()));
+    }
+    walls[0].motion = Shake<Dim>{0.2 * across_drum<Dim>(), 1};
+    auto sim = make_sim<Dim, typename C::Law, CellGrid<Dim>>(
+        packed.grains, make_law<typename C::Law>({.stiffness = 1e5, .friction = 0.5}), walls, 1);
+
+    int listed = 0;
+    int found = 0;
+    for (int k = 0; k < 3000; ++k) {
+      sim.step();
+      sim.for_each_wall_contact([&](auto&&...) { ++listed; });
+      for (const auto& wall : sim.walls()) {
+        for (int i = 0; i < sim.grains().size(); ++i) {
+          const double distance = wall.foot(sim.grains().position.col(i)).distance;
+          if (distance < sim.grains().radius[i]) ++found;
+          REQUIRE(distance > 0);
+        }
+      }
+    }
+
+    CHECK(found > 100);
+    CHECK(listed == found);
+  }
+
   TEST_CASE_TEMPLATE("the grains within reach of a wall are those whose foot is", S, Space<2>,
                      Space<3>) {
     constexpr int Dim = S::Dim;
@@ -79,7 +181,8 @@ TEST_SUITE("walls") {
     Columns<Dim> x(Dim, 200);
     for (double& c : x.reshaped()) c = random.uniform(-3, 3);
     for (const auto& wall : {Wall<Dim>::half_space("h", Vec<Dim>::Zero(), oblique<Dim>()),
-                             Wall<Dim>::segment("s", -oblique<Dim>(), oblique<Dim>())}) {
+                             Wall<Dim>::segment("s", -oblique<Dim>(), oblique<Dim>()),
+                             Wall<Dim>::cylinder("c", 0.3 * oblique<Dim>(), drum_axis<Dim>(), 2)}) {
       std::vector<int> found;
       wall.for_each_within(
           x, [](int i) { return i % 2 ? 1.0 : 0.3; }, [&](int i) { found.push_back(i); });
@@ -238,5 +341,33 @@ TEST_SUITE("walls") {
     // so to first order: 2 zeta omega0 dt / 2 = 0.7 * 0.3 / 8 of the energy of impact.
     const double fallen = 4.5 - sim.walls()[1].point.dot(up<Dim>());
     CHECK(relative_error(sim.flow().wall_work, 50 * fallen) < 0.025);
+  }
+
+  TEST_CASE_TEMPLATE("a piston is held until its start, then falls; a lid out of reach feels none",
+                     C, Case<2, LinearSpring>, Case<3, FrictionalSpring>) {
+    constexpr int Dim = C::Dim;
+    auto piston = Wall<Dim>::half_space("piston", 9 * up<Dim>(), -up<Dim>());
+    piston.motion = Piston<Dim>{3, -30 * up<Dim>(), 0.5};
+    const auto floor = Wall<Dim>::half_space("floor", Vec<Dim>::Zero(), up<Dim>());
+    auto sim = make_sim<Dim>(std::vector<Grain<Dim>>{grain_at<Dim>(1)},
+                             make_law<typename C::Law>({.stiffness = 1e6}), {floor, piston}, 1);
+    const double dt = sim.setting().time_step;
+
+    run_for(sim, 0.5 - 2 * dt);
+    CHECK(sim.walls()[1].point == 9 * up<Dim>());
+    CHECK(sim.walls()[1].velocity.isZero(0));
+    double longest = 0;
+    while (sim.time() < 0.9) {
+      const Vec<Dim> before = sim.walls()[1].point;
+      sim.step();
+      longest = std::max(longest, (sim.walls()[1].point - before).norm());
+      CHECK(sim.walls()[1].force.isZero(0));
+    }
+
+    // From rest at 10 m/s^2, known to a step; it never moves further than its speed allows.
+    const double fallen = 9 - sim.walls()[1].point.dot(up<Dim>());
+    CHECK(std::abs(fallen - 0.5 * 10 * 0.4 * 0.4) < 3 * 10 * 0.4 * dt);
+    CHECK(longest < 10 * (0.4 + 2 * dt) * dt);
+    CHECK(sim.flow().wall_work == 0);
   }
 }

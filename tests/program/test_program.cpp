@@ -88,6 +88,14 @@ bool holds(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
+template <int Dim>
+void check_start(const Scene<Dim>& scene) {
+  const auto run = make_scene_run(scene);
+  for (int k = 0; k < cases(20, 2000); ++k) run->step();
+  CHECK(run->audit().missed() == 0);
+  CHECK(to_toml(parse_scene<Dim>(to_toml(run->scene()), "again.toml")) == to_toml(run->scene()));
+}
+
 }  // namespace
 
 TEST_SUITE("program") {
@@ -145,8 +153,29 @@ TEST_SUITE("program") {
           "lagrain: s.toml:28: grain[1]: overlaps grain[0] by 50 % of the smaller radius (limit 1 "
           "%)\n");
     CHECK(holds(refused("s.toml", with(kHeap, "1/25 contact", "1/2 contact")), "allows at most"));
-    CHECK(refused("s.toml", "dimension = 3\n") ==
-          "lagrain: s.toml: dimension: spheres are not supported yet; expected 2, got 3\n");
+    CHECK(holds(
+        refused("s.toml", with(kHeap, "count = 12", "count = 1000\narrangement = \"random\"")),
+        "\"fill 1\": a solid fraction of 1"));
+    CHECK(refused("s.toml", in_space<3>(kOnTriangulation)) ==
+          "lagrain: s.toml:9: neighbourhood: spheres have no triangulation yet; expected \"linked "
+          "cells\" or \"all pairs\"\n");
+  }
+
+  TEST_CASE("spheres run like discs: folder, resolved scene, explanation") {
+    const Place place;
+    place.write("heap.toml", in_space<3>(kHeap));
+    place.write("pairs.toml", in_space<3>(with(kHeap, "linked cells", "all pairs")));
+
+    REQUIRE(place.run({"run", "heap.toml", "--out", "a"}) == 0);
+    REQUIRE(place.run({"run", "a/scene.toml", "--out", "b"}) == 0);
+    REQUIRE(place.run({"run", "pairs.toml", "--out", "c"}) == 0);
+    REQUIRE(place.run({"run", "--explain", "heap.toml"}) == 0);
+
+    CHECK(content(place / "a/series.csv") == content(place / "b/series.csv"));
+    CHECK(content(place / "a/frames/0001.csv") == content(place / "b/frames/0001.csv"));
+    CHECK(content(place / "a/frames/0001.csv") == content(place / "c/frames/0001.csv"));
+    CHECK(holds(place.out(), "dimension       3\n"));
+    CHECK(holds(place.out(), "bytes per grain 152, 56 of them for spin\n"));
   }
 
   TEST_CASE("a missing scene, an unwritable folder and a wrong flag are exit code 2") {
@@ -244,12 +273,13 @@ TEST_SUITE("program") {
     for (const auto& entry : fs::directory_iterator(LAGRAIN_SCENES)) {
       CAPTURE(entry.path().string());
       REQUIRE(entry.path().extension() == ".toml");
-      if (scene_dimension(entry.path()) != 2) continue;
-      const Scene<2> scene = read_scene<2>(entry.path());
-      const auto run = make_scene_run(scene);
-      for (int k = 0; k < cases(20, 2000); ++k) run->step();
-      CHECK(run->audit().missed() == 0);
-      CHECK(to_toml(parse_scene<2>(to_toml(run->scene()), "again.toml")) == to_toml(run->scene()));
+      if (scene_dimension(entry.path()) == 2) {
+        check_start(read_scene<2>(entry.path()));
+      } else {
+        Scene<3> scene = read_scene<3>(entry.path());
+        scene.neighbourhood = NeighbourhoodModel::linked_cells;
+        check_start(scene);
+      }
     }
   }
 }

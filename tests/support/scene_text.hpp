@@ -2,6 +2,7 @@
 /// @file
 /// Small scenes, as text.
 
+#include <regex>
 #include <stdexcept>
 #include <string>
 
@@ -57,6 +58,18 @@ inline std::string with(std::string text, const std::string& part, const std::st
   const auto at = text.find(part);
   if (at == std::string::npos) throw std::logic_error("no \"" + part + "\" in the scene");
   return text.replace(at, part.size(), instead);
+}
+
+/// A scene of discs as one of spheres: every place and direction gets a second component like its
+/// first, on the same line, and the layers of the heap are filled. In the plane, the text as it is.
+template <int Dim>
+std::string in_space(const std::string& text) {
+  if (Dim == 2) return text;
+  static const std::regex kVector(
+      R"(((gravity|velocity|position|point|normal|from|to|low|high|amplitude|load) = \[)([^,\]]+), )");
+  const std::string text3 = std::regex_replace(text, kVector, "$1$3, $3, ");
+  return with(std::regex_replace(text3, std::regex("count = 12"), "count = 48"), "dimension = 2",
+              "dimension = 3");
 }
 
 inline std::string without(const std::string& text, const std::string& line) {

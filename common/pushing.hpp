@@ -1,0 +1,94 @@
+#pragma once
+/// @file
+/// Pushes overlapping grains apart. Included by placement.cpp alone.
+
+#include <lagrain/cell_grid.hpp>
+#include <lagrain/hooke.hpp>
+#include <lagrain/simulation.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace lagrain::detail {
+
+/// Motion in syrup: what a push gives is soon lost again.
+struct Syrup {
+  static constexpr const char* kName = "syrup";
+  static constexpr bool kConservativeOnly = false;
+  static constexpr double kKept = 0.9;  ///< of the velocity, in a step
+
+  template <class G, class Forces>
+  void step(G& g, double dt, Forces& forces) {
+    g.velocity *= kKept;
+    kick(g, dt);
+    drift(g, dt);
+    forces(dt);
+  }
+};
+
+/// Moves the grains that are not pinned until none overlaps another or a wall; walls do not move.
+/// Springs that are a little longer than the grains do it, so that the last contact opens after
+/// finitely many steps.
+///
+/// @param grains velocities are left alone, masses too
+/// @param most   steps after which it gives up
+/// @return the largest overlap left, of the smaller radius; 0 if nothing overlaps [-]
+template <int Dim>
+double push_apart(std::vector<Grain<Dim>>& grains, std::vector<Wall<Dim>> walls, int most) {
+  constexpr double kSurplus = 0.005;  // of a radius
+  constexpr int kLookEvery = 10;      // steps
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const Grain<Dim>& grain : grains) smallest = std::min(smallest, grain.radius);
+
+  std::vector<Grain<Dim>> soft = grains;
+  for (Grain<Dim>& grain : soft) {
+    // As heavy as its surface has room for neighbours: together they cannot shake it.
+    grain.mass = std::pow(grain.radius / smallest, Dim - 1);
+    grain.radius *= 1 + kSurplus;
+    grain.velocity.setZero();
+    grain.omega.setZero();
+    grain.kind = 0;
+  }
+  for (Wall<Dim>& wall : walls) {
+    wall.motion = Fixed{};
+    wall.kind = 0;
+  }
+  const LinearSpring spring{.stiffness = 1};
+  auto state = make_grains<Dim, LinearSpring::needs>(soft);
+  Setting<Dim> setting;
+  setting.time_step = time_scales(state, LawTable(spring), walls).safe_step;
+  setting.largest_overlap = std::numeric_limits<double>::infinity();
+  Simulation<Dim, LinearSpring, Syrup, CellGrid<Dim>> sim(std::move(state), LawTable(spring), walls,
+                                                          setting);
+
+  // Half of the surplus stays as a gap: rounding cannot close it.
+  const auto largest_overlap = [&] {
+    const auto& r = sim.grains().radius;
+    double largest = 0;
+    const auto note = [&](double overlap, double reach, double smaller) {
+      const double real = overlap - 0.5 * kSurplus * reach;
+      largest = std::max(largest, real / smaller);
+    };
+    sim.for_each_contact([&](Pair pair, const Touch<Dim>& touch, const auto&, const auto&) {
+      note(touch.overlap, r[pair.i] + r[pair.j], std::min(r[pair.i], r[pair.j]));
+    });
+    sim.for_each_wall_contact(
+        [&](WallPair pair, const Touch<Dim>& touch, const auto&, const auto&) {
+          if (sim.grains().inverse_mass[pair.i] > 0) note(touch.overlap, r[pair.i], r[pair.i]);
+        });
+    return largest;
+  };
+  double left = largest_overlap();
+  while (left > 0 && sim.steps() < most) {
+    for (int k = 0; k < kLookEvery; ++k) sim.step();
+    left = largest_overlap();
+  }
+  for (std::size_t i = 0; i < grains.size(); ++i) {
+    grains[i].position = sim.grains().position.col(static_cast<Eigen::Index>(i));
+  }
+  return left;
+}
+
+}  // namespace lagrain::detail

@@ -1,0 +1,12 @@
+#pragma once
+/// @file
+/// A dimension as a type, for cases that need no law.
+
+namespace lagrain::test {
+
+template <int D>
+struct Space {
+  static constexpr int Dim = D;
+};
+
+}  // namespace lagrain::test
