@@ -1,6 +1,7 @@
 #include "scene_run.hpp"
 
 #include <lagrain/triangulation2.hpp>
+#include <lagrain/triangulation3.hpp>
 #include <lagrain/triangulation_neighbourhood.hpp>
 
 namespace lagrain {
@@ -8,13 +9,7 @@ namespace lagrain {
 template <int Dim>
 std::unique_ptr<Run<Dim>> make_scene_run(const Scene<Dim>& scene) {
   if (scene.neighbourhood != NeighbourhoodModel::triangulation) return make_run(scene);
-  if constexpr (Dim == 2) {
-    return make_run(scene, AnyNeighbourhood<Dim>(TriangulationNeighbourhood<Dim>{}));
-  } else {
-    throw scene.error("neighbourhood",
-                      "spheres have no triangulation yet; expected \"linked cells\" or \"all "
-                      "pairs\"");
-  }
+  return make_run(scene, AnyNeighbourhood<Dim>(TriangulationNeighbourhood<Dim>{}));
 }
 
 template std::unique_ptr<Run<2>> make_scene_run<2>(const Scene<2>&);
