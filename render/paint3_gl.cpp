@@ -79,27 +79,27 @@ layout(location = 0) in vec4 from_radius;
 layout(location = 1) in vec4 to_id;
 flat out vec3 a, b;
 flat out float radius, id;
-out vec2 local;
-// Rectangle around a sphere in the picture: low x, low y, high x, high y.
-vec4 around(vec3 c, float r) {
-  float d = -c.z;
-  vec4 seen = vec4(c.xy - r, c.xy + r);
-  if (perspective > 0.0) {
-    vec2 k = r * sqrt(c.xy * c.xy + d * d - r * r);
-    seen = vec4(c.xy * d - k, c.xy * d + k) / (d * d - r * r);
-  }
-  return seen;
+// Middle and radius of the smallest disc around a ball in the picture.
+vec3 around(vec3 c) {
+  if (perspective == 0.0) return vec3(c.xy, radius);
+  float square = c.z * c.z - radius * radius;
+  return vec3(-c.z * c.xy, radius * sqrt(dot(c, c) - radius * radius)) / square;
 }
 void main() {
   a = axes * from_radius.xyz + shift;
   b = axes * to_id.xyz + shift;
   radius = from_radius.w;
   id = to_id.w;
-  vec4 one = around(a, radius), other = around(b, radius);
-  vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);
-  local = 2.0 * corner - 1.0;
-  vec2 p = mix(min(one.xy, other.xy), max(one.zw, other.zw), corner) / half_size + jitter;
-  gl_Position = vec4(p, 0.0, 1.0);
+  // A rectangle along the body that holds the discs at its ends.
+  vec3 one = around(a), other = around(b);
+  vec2 along = other.xy - one.xy;
+  float len = length(along);
+  along = len > 1e-7 ? along / len : vec2(1.0, 0.0);
+  float reach = max(one.z, other.z);
+  vec2 corner = 2.0 * vec2(gl_VertexID & 1, gl_VertexID >> 1) - 1.0;
+  vec2 p = 0.5 * (one.xy + other.xy) + corner.x * (0.5 * len + reach) * along +
+           corner.y * reach * vec2(-along.y, along.x);
+  gl_Position = vec4(p / half_size + jitter, 0.0, 1.0);
 }
 )";
 
@@ -239,8 +239,8 @@ uniform sampler2D ids, depths;     // what is seen through each pixel
 uniform sampler2D bodies;          // ends, radius, colour; three texels a body
 uniform sampler2D panes;           // plane, four sides, colour; a row a pane, the farthest first
 uniform int pane_count;
-uniform sampler2DShadow shadows;   // maps side by side
-uniform int lights;                // the first is the sun
+uniform sampler2D shadows;         // maps of 512 x 512 texels side by side
+uniform int lights;                // the first is the sun, at most 9
 uniform vec3 light_axes[27];       // right, up, towards the light
 uniform float strength[9];
 uniform float map_reach;
@@ -252,19 +252,45 @@ uniform int outline_pixels;
 uniform float weight;
 out vec4 colour;
 
-const float kAmbient = 0.07;   // light that no shadow takes away
+const float kAmbient = 0.09;   // light that no shadow takes away
 const float kShine = 0.16;     // of the sun's reflection
 const float kGround = 0.75;    // how black the floor's deepest shadow is
+// The floor sees only half of the sky: a haze that reaches far beyond the bodies would show where
+// the picture ends.
+const float kGroundSky = 0.5;
 const float kCutFace = 0.70;   // brightness of the faces that cuts leave
 
-float lit(int k, vec3 p) {
+// Where light k sees p: texels of its map, and depth. Behind the map's range something may still be in
+// the way, therefore depth is kept inside.
+vec3 seen_by(int k, vec3 p) {
   vec3 q = vec3(dot(light_axes[3 * k], p), dot(light_axes[3 * k + 1], p),
                 -dot(light_axes[3 * k + 2], p)) / map_reach;
-  vec2 at = 0.5 * (q.xy + map_jitter) + 0.5;
-  // Outside the map nothing is in the way. Behind its range something may be: depth is kept inside.
-  if (min(at.x, at.y) < 0.0 || max(at.x, at.y) > 1.0) return 1.0;
-  return texture(shadows, vec3((float(k) + at.x) / float(lights), at.y,
-                               min(0.5 * q.z + 0.5, 0.99999)));
+  q.xy = 512.0 * (0.5 * (q.xy + map_jitter) + 0.5);
+  return vec3(q.xy, min(0.5 * q.z + 0.5, 0.99999));
+}
+
+// Whether light k reaches p: outside the map nothing is in the way. Fetching texels costs half of what
+// the texture unit's comparison does in software.
+float reaches(int k, ivec2 texel, float depth) {
+  bool outside = min(texel.x, texel.y) < 0 || max(texel.x, texel.y) > 511;
+  texel = clamp(texel, 0, 511) + ivec2(512 * k, 0);
+  return outside || depth <= texelFetch(shadows, texel, 0).r ? 1.0 : 0.0;
+}
+
+float sky_light(int k, vec3 p) {
+  vec3 q = seen_by(k, p);
+  return reaches(k, ivec2(floor(q.xy)), q.z);
+}
+
+// The sun's shadows have few steps from one sub-frame to the next; between texels they are blended.
+float sun_light(vec3 p) {
+  vec3 q = seen_by(0, p);
+  vec2 at = q.xy - 0.5, part = fract(at);
+  ivec2 texel = ivec2(floor(at));
+  vec2 below = vec2(reaches(0, texel, q.z), reaches(0, texel + ivec2(1, 0), q.z)),
+       above = vec2(reaches(0, texel + ivec2(0, 1), q.z), reaches(0, texel + ivec2(1, 1), q.z));
+  vec2 both = mix(below, above, part.y);
+  return mix(both.x, both.y, part.x);
 }
 
 vec4 body(int id, int part) { return texelFetch(bodies, ivec2(id % 512 * 3 + part, id / 512), 0); }
@@ -304,14 +330,15 @@ void main() {
   float light = 0.0, all = 0.0, shine = 0.0;
   if (on_ground || (solid && paint.w > 0.0)) {
     vec3 to_eye = -normalize(d);
-    for (int k = 0; k < lights; ++k) {
-      vec3 to_light = light_axes[3 * k + 2];
-      float full = strength[k] * max(dot(n, to_light), 0.0), part = full * lit(k, p);
-      light += part;
+    all = strength[0] * max(dot(n, light_axes[2]), 0.0);
+    float sun = sun_light(p);
+    light = all * sun;
+    if (all > 0.0) shine = sun * pow(max(dot(n, normalize(light_axes[2] + to_eye)), 0.0), 48.0);
+    for (int k = 1; k < lights; ++k) {
+      float full = strength[k] * max(dot(n, light_axes[3 * k + 2]), 0.0);
+      if (on_ground) full *= kGroundSky;
+      light += full * sky_light(k, p);
       all += full;
-      if (k == 0 && full > 0.0) {
-        shine = part / full * pow(max(dot(n, normalize(to_light + to_eye)), 0.0), 48.0);
-      }
     }
   }
   vec4 sum = vec4(0.0);
@@ -798,11 +825,6 @@ class Painter {
       draw(body_shadow_, light, drawn.others);
     }
     gl::Disable(GL_DEPTH_TEST);
-    gl::bind_texture(0, shadows_.depth());
-    gl::TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-    gl::TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
-    gl::TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    gl::TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   }
 
   // Light on what is seen, into the sum.

@@ -69,8 +69,8 @@ Camera look(const Box3& box, const Vec<3>& direction, const Vec<3>& up, double a
 Lights over_the_shoulder(const Camera& camera) {
   const Eigen::Matrix3d page = axes(camera).transpose();  // columns: right, up, towards the viewer
   Lights lights;
-  lights.sun = page * Vec<3>(-0.5, 0.7, 0.8);
-  lights.zenith = page * Vec<3>(0, 0.7, 0.7);
+  lights.sun = page * Vec<3>(-0.4, 0.55, 1);
+  lights.zenith = page * Vec<3>(0, 0.6, 0.8);
   return lights;
 }
 

@@ -52,7 +52,7 @@ struct Line3 {
 /// of their middles.
 struct Pane {
   std::array<Vec<3>, 4> corners;        ///< in either sense of rotation [m]
-  Colour colour = {120, 150, 180, 40};  ///< alpha is the share of the tint
+  Colour colour = {120, 150, 180, 30};  ///< alpha is the share of the tint
 };
 
 /// Horizontal or inclined floor that is seen only by the shadows that fall on it: exactly the
@@ -99,7 +99,7 @@ struct Lights {
   Vec<3> zenith = Vec<3>(0, 0, 1);        ///< direction towards the middle of the sky [-]
   double sun_radius = 0.06;               ///< angle between the sun's middle and its rim [rad]
   double sun_strength = 0.62;             ///< on a surface that faces it [-]
-  double sky_strength = 0.50;             ///< on a surface that sees all of it [-]
+  double sky_strength = 0.55;             ///< on a surface that sees all of it [-]
 };
 
 /// Lights that turn with the camera: the sun stands behind the viewer's left shoulder, the sky
