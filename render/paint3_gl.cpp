@@ -1,6 +1,8 @@
 #include "paint3_gl.hpp"
 
 #include "gl.hpp"
+#include "shaders3.hpp"
+#include "sieve3.hpp"
 
 #include <lagrain/check.hpp>
 #include <lagrain/paint.hpp>
@@ -38,362 +40,16 @@
 namespace lagrain {
 namespace {
 
-using Vec2f = Eigen::Vector2f;
-using Vec3f = Eigen::Vector3f;
-
-// One ball, tube or line, as the vertex shaders read it.
-struct Body {
-  std::array<float, 3> from{};
-  float radius = 0;  // of a line: half its width in pixels
-  std::array<float, 3> to{};
-  float id = 0;
-};
-static_assert(sizeof(Body) == 32);
+using detail::Body;
+using detail::Drawn;
+using detail::Vec2f;
+using detail::Vec3f;
+using detail::View;
 
 constexpr int kMapSize = 512;       // of a shadow map, in texels
 constexpr float kMapReach = 1.02F;  // half its width; the scene's radius is 1
 constexpr int kMostCuts = 8;
-constexpr float kLeastDepth = 1e-5F;  // before the eye of a perspective camera
-constexpr int kBodiesPerRow = 512;    // of the table that the last pass reads
-
-// How a camera or a light sees the scene.
-const char* const kView = R"(#version 330 core
-uniform mat3 axes;         // rows: right, up, towards the viewer
-uniform vec3 shift;        // the scene's middle, seen from the eye along these axes
-uniform vec2 half_size;    // of the picture; perspective: at depth 1
-uniform vec2 jitter;       // of the picture, where 2 is its size
-uniform float perspective; // 0 or 1
-uniform vec2 range;        // least depth, extent
-uniform vec4 window;       // x, y, width, height in pixels
-#define DEPTH(t) clamp(((t) - range.x) / range.y, 0.0, 1.0)
-// The point o + t d of the line of sight through a pixel has the depth t.
-void sight(vec2 pixel, out vec3 o, out vec3 d) {
-  vec2 q = (2.0 * (pixel - window.xy) / window.zw - 1.0 - jitter) * half_size;
-  o = vec3((1.0 - perspective) * q, 0.0);
-  d = vec3(perspective * q, -1.0);
-}
-)";
-
-const char* const kBodyVertexShader = R"(
-layout(location = 0) in vec4 from_radius;
-layout(location = 1) in vec4 to_id;
-flat out vec3 a, b;
-flat out float radius, id;
-// Middle and radius of the smallest disc around a ball in the picture.
-vec3 around(vec3 c) {
-  if (perspective == 0.0) return vec3(c.xy, radius);
-  float square = c.z * c.z - radius * radius;
-  return vec3(-c.z * c.xy, radius * sqrt(dot(c, c) - radius * radius)) / square;
-}
-void main() {
-  a = axes * from_radius.xyz + shift;
-  b = axes * to_id.xyz + shift;
-  radius = from_radius.w;
-  id = to_id.w;
-  // A rectangle along the body that holds the discs at its ends.
-  vec3 one = around(a), other = around(b);
-  vec2 along = other.xy - one.xy;
-  float len = length(along);
-  along = len > 1e-7 ? along / len : vec2(1.0, 0.0);
-  float reach = max(one.z, other.z);
-  vec2 corner = 2.0 * vec2(gl_VertexID & 1, gl_VertexID >> 1) - 1.0;
-  vec2 p = 0.5 * (one.xy + other.xy) + corner.x * (0.5 * len + reach) * along +
-           corner.y * reach * vec2(-along.y, along.x);
-  gl_Position = vec4(p / half_size + jitter, 0.0, 1.0);
-}
-)";
-
-// A ball that no cut touches.
-const char* const kBallFragmentShader = R"(
-flat in vec3 a;
-flat in float radius, id;
-out float seen;
-void main() {
-  vec3 o, d;
-  sight(gl_FragCoord.xy, o, d);
-  float along = dot(d, d), t = dot(a - o, d) / along;
-  vec3 aside = o + t * d - a;
-  float inside = radius * radius - dot(aside, aside);
-  if (inside < 0.0) discard;
-  gl_FragDepth = DEPTH(t - sqrt(inside / along));
-  seen = id;
-}
-)";
-
-// Its shadow; lights see along parallel lines.
-const char* const kBallShadowVertexShader = R"(
-layout(location = 0) in vec4 from_radius;
-out vec2 local;
-void main() {
-  vec3 c = axes * from_radius.xyz + shift;
-  local = 2.0 * vec2(gl_VertexID & 1, gl_VertexID >> 1) - 1.0;
-  gl_Position = vec4((c.xy + from_radius.w * local) / half_size + jitter,
-                     2.0 * DEPTH(-c.z) - 1.0, 1.0);
-}
-)";
-
-const char* const kBallShadowFragmentShader = R"(
-in vec2 local;
-void main() {
-  if (dot(local, local) > 1.0) discard;
-}
-)";
-
-// A tube, or a ball that is cut: the ray's stretch inside the hull of two balls, then inside the
-// half-spaces that the cuts leave. With SHADOW the middle of the stretch, without it its beginning.
-const char* const kBodyFragmentShader = R"(
-flat in vec3 a, b;
-flat in float radius, id;
-uniform vec4 cuts[8];
-uniform int cut_count;
-#ifndef SHADOW
-out float seen;
-#endif
-void ball(vec3 o, vec3 d, vec3 c, inout vec2 stretch) {
-  float along = dot(d, d), t = dot(c - o, d) / along;
-  vec3 aside = o + t * d - c;
-  float inside = radius * radius - dot(aside, aside);
-  if (inside < 0.0) return;
-  float h = sqrt(inside / along);
-  stretch = vec2(min(stretch.x, t - h), max(stretch.y, t + h));
-}
-void cylinder(vec3 o, vec3 d, inout vec2 stretch) {
-  float len = distance(a, b);
-  if (len < 1e-6) return;
-  vec3 u = (b - a) / len;
-  float o_along = dot(o - a, u), d_along = dot(d, u);
-  vec3 o_aside = o - a - o_along * u, d_aside = d - d_along * u;
-  float dd = dot(d_aside, d_aside);
-  if (dd < 1e-10) return;
-  float t = -dot(o_aside, d_aside) / dd;
-  vec3 nearest = o_aside + t * d_aside;
-  float inside = radius * radius - dot(nearest, nearest);
-  if (inside < 0.0) return;
-  float h = sqrt(inside / dd);
-  vec2 part = vec2(t - h, t + h);
-  float step = abs(d_along) > 1e-7 ? d_along : 1e-7;
-  vec2 ends = (vec2(0.0, len) - o_along) / step;
-  part = vec2(max(part.x, min(ends.x, ends.y)), min(part.y, max(ends.x, ends.y)));
-  if (part.x < part.y) stretch = vec2(min(stretch.x, part.x), max(stretch.y, part.y));
-}
-void main() {
-  vec3 o, d;
-  sight(gl_FragCoord.xy, o, d);
-  float near = -0.5 * (a.z + b.z);  // start beside the body, for the sake of precision
-  o += near * d;
-  vec2 stretch = vec2(1e9, -1e9);
-  ball(o, d, a, stretch);
-  ball(o, d, b, stretch);
-  cylinder(o, d, stretch);
-  for (int k = 0; k < cut_count; ++k) {
-    float rate = dot(cuts[k].xyz, d), left = cuts[k].w - dot(cuts[k].xyz, o);
-    float t = left / (abs(rate) > 1e-9 ? rate : 1e-9);
-    if (rate > 0.0) stretch.y = min(stretch.y, t); else stretch.x = max(stretch.x, t);
-  }
-  if (stretch.x > stretch.y) discard;
-#ifdef SHADOW
-  gl_FragDepth = DEPTH(near + 0.5 * (stretch.x + stretch.y));
-#else
-  gl_FragDepth = DEPTH(near + stretch.x);
-  seen = id;
-#endif
-}
-)";
-
-const char* const kLineVertexShader = R"(
-layout(location = 0) in vec4 from_radius;
-layout(location = 1) in vec4 to_id;
-flat out float id;
-out float reach;  // depth, perspective: its inverse; both are linear in the picture
-void main() {
-  vec3 a = axes * from_radius.xyz + shift, b = axes * to_id.xyz + shift;
-  vec2 depth = -vec2(a.z, b.z);
-  vec2 scale = perspective > 0.0 ? 1.0 / depth : vec2(1.0);
-  vec2 pa = 0.5 * window.zw * (a.xy * scale.x / half_size + jitter);
-  vec2 pb = 0.5 * window.zw * (b.xy * scale.y / half_size + jitter);
-  vec2 along = pb - pa;
-  float len = max(length(along), 1e-6), half_width = from_radius.w;
-  along /= len;
-  vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);
-  float s = mix(-half_width, len + half_width, corner.x);
-  vec2 p = pa + s * along + (2.0 * corner.y - 1.0) * half_width * vec2(-along.y, along.x);
-  vec2 ends = perspective > 0.0 ? scale : depth;
-  reach = mix(ends.x, ends.y, s / len);
-  id = to_id.w;
-  gl_Position = vec4(2.0 * p / window.zw, 0.0, 1.0);
-}
-)";
-
-const char* const kLineFragmentShader = R"(
-flat in float id;
-in float reach;
-out float seen;
-void main() {
-  gl_FragDepth = DEPTH(perspective > 0.0 ? 1.0 / reach : reach);
-  seen = id;
-}
-)";
-
-const char* const kLightFragmentShader = R"(
-uniform sampler2D ids, depths;     // what is seen through each pixel
-uniform sampler2D bodies;          // ends, radius, colour; three texels a body
-uniform sampler2D panes;           // plane, four sides, colour; a row a pane, the farthest first
-uniform int pane_count;
-uniform sampler2D shadows;         // maps of 512 x 512 texels side by side
-uniform int lights;                // the first is the sun, at most 9
-uniform vec3 light_axes[27];       // right, up, towards the light
-uniform float strength[9];
-uniform float map_reach;
-uniform vec2 map_jitter;
-uniform vec4 ground;               // normal, height
-uniform int has_ground;
-uniform vec4 outline;              // colour, opacity
-uniform int outline_pixels;
-uniform float weight;
-out vec4 colour;
-
-const float kAmbient = 0.09;   // light that no shadow takes away
-const float kShine = 0.16;     // of the sun's reflection
-const float kGround = 0.75;    // how black the floor's deepest shadow is
-// The floor sees only half of the sky: a haze that reaches far beyond the bodies would show where
-// the picture ends.
-const float kGroundSky = 0.5;
-const float kCutFace = 0.70;   // brightness of the faces that cuts leave
-
-// Where light k sees p: texels of its map, and depth. Behind the map's range something may still be in
-// the way, therefore depth is kept inside.
-vec3 seen_by(int k, vec3 p) {
-  vec3 q = vec3(dot(light_axes[3 * k], p), dot(light_axes[3 * k + 1], p),
-                -dot(light_axes[3 * k + 2], p)) / map_reach;
-  q.xy = 512.0 * (0.5 * (q.xy + map_jitter) + 0.5);
-  return vec3(q.xy, min(0.5 * q.z + 0.5, 0.99999));
-}
-
-// Whether light k reaches p: outside the map nothing is in the way. Fetching texels costs half of what
-// the texture unit's comparison does in software.
-float reaches(int k, ivec2 texel, float depth) {
-  bool outside = min(texel.x, texel.y) < 0 || max(texel.x, texel.y) > 511;
-  texel = clamp(texel, 0, 511) + ivec2(512 * k, 0);
-  return outside || depth <= texelFetch(shadows, texel, 0).r ? 1.0 : 0.0;
-}
-
-float sky_light(int k, vec3 p) {
-  vec3 q = seen_by(k, p);
-  return reaches(k, ivec2(floor(q.xy)), q.z);
-}
-
-// The sun's shadows have few steps from one sub-frame to the next; between texels they are blended.
-float sun_light(vec3 p) {
-  vec3 q = seen_by(0, p);
-  vec2 at = q.xy - 0.5, part = fract(at);
-  ivec2 texel = ivec2(floor(at));
-  vec2 below = vec2(reaches(0, texel, q.z), reaches(0, texel + ivec2(1, 0), q.z)),
-       above = vec2(reaches(0, texel + ivec2(0, 1), q.z), reaches(0, texel + ivec2(1, 1), q.z));
-  vec2 both = mix(below, above, part.y);
-  return mix(both.x, both.y, part.x);
-}
-
-vec4 body(int id, int part) { return texelFetch(bodies, ivec2(id % 512 * 3 + part, id / 512), 0); }
-
-void main() {
-  ivec2 at = ivec2(gl_FragCoord.xy);
-  float seen = texelFetch(ids, at, 0).r, z = texelFetch(depths, at, 0).r;
-  vec3 o, d;
-  sight(gl_FragCoord.xy, o, d);
-  o = (o - shift) * axes;
-  d = d * axes;
-  float t = seen >= 0.0 ? range.x + z * range.y : 1e9;
-
-  bool on_ground = false;
-  if (has_ground == 1) {
-    float towards = dot(ground.xyz, d);
-    float to_ground = (ground.w - dot(ground.xyz, o)) / towards;
-    on_ground = towards < 0.0 && to_ground > 0.0 && to_ground < t - 1e-4;
-    if (on_ground) t = to_ground;
-  }
-  bool solid = seen >= 0.0 && !on_ground;
-  vec3 p = o + t * d, n = ground.xyz;
-  vec4 paint = vec4(0.0);
-  float radius = 0.0;
-  bool flat_face = false;
-  if (solid) {
-    int id = int(seen);
-    vec4 a = body(id, 0);
-    vec3 along = body(id, 1).xyz - a.xyz;
-    paint = body(id, 2);
-    radius = a.w;
-    n = p - a.xyz - clamp(dot(p - a.xyz, along) / max(dot(along, along), 1e-12), 0.0, 1.0) * along;
-    flat_face = length(n) < 0.998 * radius - 1e-6;
-    n = normalize(n);
-  }
-
-  float light = 0.0, all = 0.0, shine = 0.0;
-  if (on_ground || (solid && paint.w > 0.0)) {
-    vec3 to_eye = -normalize(d);
-    all = strength[0] * max(dot(n, light_axes[2]), 0.0);
-    float sun = sun_light(p);
-    light = all * sun;
-    if (all > 0.0) shine = sun * pow(max(dot(n, normalize(light_axes[2] + to_eye)), 0.0), 48.0);
-    for (int k = 1; k < lights; ++k) {
-      float full = strength[k] * max(dot(n, light_axes[3 * k + 2]), 0.0);
-      if (on_ground) full *= kGroundSky;
-      light += full * sky_light(k, p);
-      all += full;
-    }
-  }
-  vec4 sum = vec4(0.0);
-  if (on_ground) sum.a = all > 0.0 ? kGround * (1.0 - light / all) : 0.0;
-  if (solid) {
-    sum = vec4(paint.rgb, 1.0);
-    if (flat_face) {
-      sum.rgb *= kCutFace;
-    } else if (paint.w > 0.0) {
-      sum.rgb = sum.rgb * (kAmbient + light) + kShine * shine;
-    }
-    if (paint.w > 0.0 && outline.a > 0.0) {
-      ivec2 last = textureSize(ids, 0) - 1;
-      float step = 0.0;
-      for (int k = 0; k < 4; ++k) {
-        ivec2 aside = (k & 1) == 0 ? ivec2((k & 2) - 1, 0) : ivec2(0, (k & 2) - 1);
-        ivec2 beside = clamp(at + outline_pixels * aside, ivec2(0), last);
-        float other = texelFetch(ids, beside, 0).r;
-        float behind = range.x + texelFetch(depths, beside, 0).r * range.y - t;
-        if (other < 0.0) behind = 1e9;
-        if (other != seen) step = max(step, smoothstep(0.1, 0.6, behind / radius));
-      }
-      sum.rgb = mix(sum.rgb, outline.rgb, outline.a * step);
-    }
-  }
-
-  for (int k = 0; k < pane_count; ++k) {
-    vec4 plane = texelFetch(panes, ivec2(0, k), 0), tint = texelFetch(panes, ivec2(5, k), 0);
-    float to_pane = (plane.w - dot(plane.xyz, o)) / dot(plane.xyz, d);
-    vec3 x = o + to_pane * d;
-    bool inside = to_pane > 0.0 && to_pane < t;
-    for (int side = 1; side <= 4; ++side) {
-      vec4 edge = texelFetch(panes, ivec2(side, k), 0);
-      inside = inside && dot(edge.xyz, x) <= edge.w;
-    }
-    if (inside) sum = vec4(tint.rgb, 1.0) * tint.a + (1.0 - tint.a) * sum;
-  }
-  colour = weight * sum;
-}
-)";
-
-// From light to sRGB, on the background.
-const char* const kDevelopFragmentShader = R"(#version 330 core
-uniform sampler2D sum;
-uniform vec4 background;
-out vec4 colour;
-void main() {
-  vec4 c = texelFetch(sum, ivec2(gl_FragCoord.xy), 0);
-  c += (1.0 - c.a) * vec4(background.rgb, 1.0) * background.a;
-  vec3 light = clamp(c.rgb / max(c.a, 1e-6), 0.0, 1.0);
-  vec3 encoded = mix(12.92 * light, 1.055 * pow(light, vec3(1.0 / 2.4)) - 0.055,
-                     step(0.0031308, light));
-  colour = vec4(encoded, 1.0) * c.a;
-}
-)";
+constexpr int kBodiesPerRow = 512;  // of the table that the last pass reads
 
 float from_srgb(std::uint8_t value) {
   const double v = value / 255.0;
@@ -403,21 +59,6 @@ float from_srgb(std::uint8_t value) {
 std::array<float, 4> linear(Colour c) {
   return {from_srgb(c.r), from_srgb(c.g), from_srgb(c.b), static_cast<float>(c.a) / 255};
 }
-
-// How a camera or a light sees the scene; see kView.
-struct View {
-  Eigen::Matrix3f axes;
-  Vec3f shift;
-  Vec2f half_size;
-  Vec2f jitter = Vec2f::Zero();
-  bool perspective = false;
-  float nearest = 0, extent = 1;
-  int x = 0, width = 0, height = 0;
-
-  Vec3f seen(const std::array<float, 3>& p) const {
-    return axes * Eigen::Map<const Vec3f>(p.data()) + shift;
-  }
-};
 
 View light_view(const Vec3f& towards, int index, const Vec2f& jitter) {
   View view;
@@ -444,106 +85,20 @@ double halton(int index, int base) {
   return sum;
 }
 
-// What a view needs to draw.
-struct Drawn {
-  std::vector<Body> balls;   // whole
-  std::vector<Body> others;  // cut balls, tubes
-};
-
-// Leaves out balls that are wholly hidden behind nearer ones: most of a packing, for every view. On
-// a grid of tiles, a ball hides whatever lies behind it in the tiles that it covers entirely;
-// exact, the picture is the same without.
-class Sieve {
- public:
-  // @param tile side of a tile in pixels
-  // @param flat balls are discs at the depth of their centres, as in shadow maps
-  void sift(const View& view, const std::vector<Body>& balls, const std::vector<char>& is_cut,
-            int tile, bool flat, Drawn& drawn) {
-    const int columns = (view.width + tile - 1) / tile, rows = (view.height + tile - 1) / tile;
-    deepest_.assign(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows),
-                    std::numeric_limits<float>::infinity());
-    order_.clear();
-    for (std::size_t k = 0; k < balls.size(); ++k) {
-      const float depth = -view.seen(balls[k].from)[2];
-      if (!view.perspective || depth - balls[k].radius >= kLeastDepth)
-        order_.emplace_back(depth, k);
-    }
-    std::sort(order_.begin(), order_.end());
-
-    // Tiles per unit of the picture, and the picture's middle in tiles.
-    const Vec2f size(static_cast<float>(view.width), static_cast<float>(view.height));
-    const Vec2f scale = 0.5F / static_cast<float>(tile) * size.cwiseQuotient(view.half_size);
-    const Vec2f middle =
-        0.5F / static_cast<float>(tile) * size.cwiseProduct(view.jitter + Vec2f::Ones());
-    for (const auto& [depth, k] : order_) {
-      const Body& ball = balls[k];
-      const Vec3f c = view.seen(ball.from);
-      const float r = ball.radius;
-      Vec2f low = c.head<2>() - Vec2f::Constant(r), high = c.head<2>() + Vec2f::Constant(r);
-      Vec2f centre = c.head<2>();
-      float covers = r, least = flat ? depth : depth - r, most = depth;
-      if (view.perspective) {
-        const float dd = depth * depth - r * r;
-        for (int i = 0; i < 2; ++i) {
-          const float root = r * std::sqrt(c[i] * c[i] + dd);
-          low[i] = (c[i] * depth - root) / dd;
-          high[i] = (c[i] * depth + root) / dd;
-        }
-        centre /= depth;
-        covers /= depth;  // a disc across the line of sight, inside the ball's outline
-        most += r * c.head<2>().norm() / c.norm();  // what is seen of the ball is nearer than this
-      }
-      low = low.cwiseProduct(scale) + middle;
-      high = high.cwiseProduct(scale) + middle;
-      centre = centre.cwiseProduct(scale) + middle;
-      const int x0 = std::max(0, static_cast<int>(std::floor(low[0]))),
-                x1 = std::min(columns - 1, static_cast<int>(std::floor(high[0]))),
-                y0 = std::max(0, static_cast<int>(std::floor(low[1]))),
-                y1 = std::min(rows - 1, static_cast<int>(std::floor(high[1])));
-      bool hidden = true;
-      for (int y = y0; y <= y1 && hidden; ++y) {
-        const float* row = deepest_.data() + static_cast<std::ptrdiff_t>(y) * columns;
-        for (int x = x0; x <= x1 && hidden; ++x) hidden = row[x] <= least;
-      }
-      if (hidden) continue;
-      if (is_cut[k] != 0) {
-        drawn.others.push_back(ball);
-        continue;
-      }
-      drawn.balls.push_back(ball);
-      // A hair smaller than the ball, so that rounding cannot make it hide too much.
-      const Vec2f reach = 0.999F * covers * scale;
-      for (int y = y0; y <= y1; ++y) {
-        const float away = std::max(std::abs(static_cast<float>(y) - centre[1]),
-                                    std::abs(static_cast<float>(y + 1) - centre[1])) /
-                           reach[1];
-        if (away >= 1) continue;
-        const float half = reach[0] * std::sqrt(1 - away * away);
-        const int first = std::max(x0, static_cast<int>(std::ceil(centre[0] - half))),
-                  end = std::min(x1 + 1, static_cast<int>(std::floor(centre[0] + half)));
-        float* row = deepest_.data() + static_cast<std::ptrdiff_t>(y) * columns;
-        for (int x = first; x < end; ++x) row[x] = std::min(row[x], most);
-      }
-    }
-  }
-
- private:
-  std::vector<float> deepest_;  // of what is seen in a tile
-  std::vector<std::pair<float, std::size_t>> order_;
-};
-
 class Painter {
  public:
   Painter() {
-    const std::string view = kView;
-    const std::string body = view + kBodyVertexShader;
-    ball_ = gl::program(body, view + kBallFragmentShader);
-    body_ = gl::program(body, view + kBodyFragmentShader);
-    line_ = gl::program(view + kLineVertexShader, view + kLineFragmentShader);
-    ball_shadow_ = gl::program(view + kBallShadowVertexShader, view + kBallShadowFragmentShader);
-    body_shadow_ = gl::program(body, view + "#define SHADOW\n" + kBodyFragmentShader);
-    light_ = gl::program(gl::kWholeVertexShader, view + kLightFragmentShader);
-    develop_ = gl::program(gl::kWholeVertexShader, kDevelopFragmentShader);
+    namespace source = detail::shaders3;
+    const std::string view = source::kView;
+    const std::string body = view + source::kBodyVertexShader;
+    ball_ = gl::program(body, view + source::kBallFragmentShader);
+    body_ = gl::program(body, view + source::kBodyFragmentShader);
+    line_ = gl::program(view + source::kLineVertexShader, view + source::kLineFragmentShader);
+    ball_shadow_ = gl::program(view + source::kBallShadowVertexShader,
+                               view + source::kBallShadowFragmentShader);
+    body_shadow_ = gl::program(body, view + "#define SHADOW\n" + source::kBodyFragmentShader);
+    light_ = gl::program(gl::kWholeVertexShader, view + source::kLightFragmentShader);
+    develop_ = gl::program(gl::kWholeVertexShader, source::kDevelopFragmentShader);
     gl::GenVertexArrays(1, &array_);
     gl::GenBuffers(1, &buffer_);
     gl::BindVertexArray(array_);
@@ -707,7 +262,7 @@ class Painter {
     const auto drop_behind = [this](std::vector<Body>& bodies, bool tubes) {
       std::erase_if(bodies, [&](const Body& body) {
         const float depth = -std::max(view_.seen(body.from)[2], view_.seen(body.to)[2]);
-        return view_.perspective && depth - (tubes ? body.radius : 0) < kLeastDepth;
+        return view_.perspective && depth - (tubes ? body.radius : 0) < detail::kLeastDepth;
       });
     };
     drop_behind(tubes_, true);
@@ -931,7 +486,7 @@ class Painter {
   int pane_count_ = 0;
   std::vector<View> lights_;
   std::vector<float> strengths_;
-  Sieve sieve_;
+  detail::Sieve sieve_;
 };
 
 Painter& painter() {
