@@ -196,8 +196,8 @@ class Painter {
     const auto id = static_cast<float>(table_.size() / 12);
     const Body body{place(from), radius, place(end), id};
     to.push_back(body);
-    table_.insert(table_.end(), {body.from[0], body.from[1], body.from[2], lit ? radius : 0,
-                                 body.to[0], body.to[1], body.to[2], 0});
+    table_.insert(table_.end(), {body.from[0], body.from[1], body.from[2], lit ? radius : 0.0F,
+                                 body.to[0], body.to[1], body.to[2], lit ? 0.0F : radius});
     const std::array<float, 4> c = linear(colour);
     table_.insert(table_.end(), {c[0], c[1], c[2], lit ? 1.0F : 0.0F});
   }
@@ -249,7 +249,7 @@ class Painter {
   }
 
   void aim(const Camera& camera, int width, int height) {
-    const Eigen::Matrix3d rows = axes(camera);
+    const Eigen::Matrix3d rows = page_axes(camera);
     view_.axes = rows.cast<float>();
     view_.shift = (rows * (origin_ - camera.eye) / unit_).cast<float>();
     view_.perspective = camera.perspective;
@@ -502,6 +502,9 @@ void expect_paintable(const Scene3& scene, int width, int height) {
                       " m, the number of sub-frames " + std::to_string(scene.subframes));
   LAGRAIN_EXPECTS(scene.cuts.size() <= kMostCuts,
                   "paint_scene3: " + std::to_string(scene.cuts.size()) + " cuts");
+  LAGRAIN_EXPECTS(scene.lights.sun.norm() > 0 && scene.lights.zenith.norm() > 0 &&
+                      (!scene.floor || scene.floor->normal.norm() > 0),
+                  "paint_scene3: the direction of the sun, the sky or the floor has no length");
   if (std::max(width, height) > gl::kLargest) {
     throw SceneError("a picture of " + std::to_string(width) + " x " + std::to_string(height) +
                      " pixels is too large: at most " + std::to_string(gl::kLargest) +

@@ -12,7 +12,7 @@
 
 namespace lagrain {
 
-Eigen::Matrix3d axes(const Camera& camera) {
+Eigen::Matrix3d page_axes(const Camera& camera) {
   const Vec<3> back = camera.eye - camera.target;
   const Vec<3> right = camera.up.cross(back);
   LAGRAIN_EXPECTS(right.norm() > 1e-9 * camera.up.norm() * back.norm(),
@@ -33,7 +33,7 @@ Camera look(const Box3& box, const Vec<3>& direction, const Vec<3>& up, double a
                   "look: aspect " + std::to_string(aspect) + ", field of view " +
                       std::to_string(field_of_view) + " rad, margin " + std::to_string(margin));
   Camera camera{box.centre() - direction, box.centre(), up, 1, field_of_view > 0};
-  const Eigen::Matrix3d rows = axes(camera);
+  const Eigen::Matrix3d rows = page_axes(camera);
 
   // Seen from the eye (x, y, z) the picture is 2 t (z - c) high where a corner has c. Corner (a, b,
   // c) lies inside it while |b - y| <= t (z - c), that is, while max(b + t c) <= y + t z and min(b
@@ -67,7 +67,8 @@ Camera look(const Box3& box, const Vec<3>& direction, const Vec<3>& up, double a
 }
 
 Lights over_the_shoulder(const Camera& camera) {
-  const Eigen::Matrix3d page = axes(camera).transpose();  // columns: right, up, towards the viewer
+  const Eigen::Matrix3d page =
+      page_axes(camera).transpose();  // columns: right, up, towards the viewer
   Lights lights;
   lights.sun = page * Vec<3>(-0.4, 0.55, 1);
   lights.zenith = page * Vec<3>(0, 0.6, 0.8);
@@ -89,7 +90,7 @@ void add_edges(Scene3& scene, const Box3& box, const Stroke& stroke) {
 }
 
 View3::View3(const Camera& camera, const Box& page)
-    : axes_(axes(camera)),
+    : axes_(page_axes(camera)),
       eye_(camera.eye),
       middle_(page.centre()),
       scale_(page.size()[1] / camera.height),

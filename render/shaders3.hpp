@@ -184,7 +184,8 @@ void main() {
 
 inline constexpr const char* kLightFragmentShader = R"(
 uniform sampler2D ids, depths;     // what is seen through each pixel
-uniform sampler2D bodies;          // ends, radius, colour; three texels a body
+uniform sampler2D bodies;          // three texels a body: end and radius, end and half a line's
+                                   // pixels, colour and whether it is lit
 uniform sampler2D panes;           // plane, four sides, colour; a row a pane, the farthest first
 uniform int pane_count;
 uniform sampler2D shadows;         // maps of 512 x 512 texels side by side
@@ -243,6 +244,13 @@ float sun_light(vec3 p) {
 
 vec4 body(int id, int part) { return texelFetch(bodies, ivec2(id % 512 * 3 + part, id / 512), 0); }
 
+// How much nearer than a line a plane that holds it may be at this pixel, which lies `aside` of the
+// line's axis at most; bodies have no width aside.
+float slack(vec3 normal, vec3 d, float aside) {
+  float c = abs(dot(normal, normalize(d)));
+  return 1e-4 + aside * sqrt(max(1.0 - c * c, 0.0)) / max(c, 0.01);
+}
+
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   float seen = texelFetch(ids, at, 0).r, z = texelFetch(depths, at, 0).r;
@@ -254,13 +262,16 @@ void main() {
 
   int id = int(max(seen, 0.0));
   vec4 paint = body(id, 2);
-  // Lines on the floor or on a pane stay in front of it for their whole width.
-  float slack = paint.w > 0.0 ? 1e-4 : 0.01;
+  float aside = 0.0;
+  if (seen >= 0.0 && paint.w == 0.0) {
+    float pixel = 2.0 * half_size.y / window.w * mix(1.0, t, perspective);
+    aside = (body(id, 1).w + 1.0) * pixel;
+  }
   bool on_ground = false;
   if (has_ground == 1) {
     float towards = dot(ground.xyz, d);
     float to_ground = (ground.w - dot(ground.xyz, o)) / towards;
-    on_ground = towards < 0.0 && to_ground > 0.0 && to_ground < t - slack;
+    on_ground = towards < 0.0 && to_ground > 0.0 && to_ground < t - slack(ground.xyz, d, aside);
     if (on_ground) t = to_ground;
   }
   bool solid = seen >= 0.0 && !on_ground;
@@ -318,7 +329,7 @@ void main() {
     vec4 plane = texelFetch(panes, ivec2(0, k), 0), tint = texelFetch(panes, ivec2(5, k), 0);
     float to_pane = (plane.w - dot(plane.xyz, o)) / dot(plane.xyz, d);
     vec3 x = o + to_pane * d;
-    bool inside = to_pane > 0.0 && to_pane < t - slack;
+    bool inside = to_pane > 0.0 && to_pane < t - slack(plane.xyz, d, aside);
     for (int side = 1; side <= 4; ++side) {
       vec4 edge = texelFetch(panes, ivec2(side, k), 0);
       inside = inside && dot(edge.xyz, x) <= edge.w;

@@ -32,8 +32,8 @@ Image paint_rgba(const DisplayList& list, double dpi, Quality quality = Quality:
 /// @param dpi pixels per inch, for widths given in points; at 72 a point is a pixel
 /// @pre at most 8 cuts; scene.subframes >= 1
 /// @throws SceneError    if the picture is too large for the renderer or OpenGL is missing
-/// @throws ContractError if the camera sees nothing (no height, eye at the target), or a cut or a
-///                       pane has no normal
+/// @throws ContractError if the camera sees nothing (no height, eye at the target), or a cut, a
+///                       pane, the floor or a light has no direction
 Image paint_scene3(const Scene3& scene, int width, int height, double dpi = 72);
 
 /// Paints a scene for a place on a page: add the result to a display list, labels on top of it by

@@ -59,7 +59,7 @@ struct Pane {
 /// background's colour where no light is missing, invisible from below.
 struct Floor {
   double height = 0;                ///< along the normal, from the origin [m]
-  Vec<3> normal = Vec<3>(0, 0, 1);  ///< upwards [-]
+  Vec<3> normal = Vec<3>(0, 0, 1);  ///< upwards [-], of any length > 0
 };
 
 /// The half-space normal . x > offset is taken out of balls and tubes; where it cuts them they are
@@ -80,7 +80,7 @@ struct Camera {
 
 /// Unit vectors of the page as rows: right, up, towards the viewer.
 /// @throws ContractError if the eye is at the target, or up along the line of sight
-Eigen::Matrix3d axes(const Camera& camera);
+Eigen::Matrix3d page_axes(const Camera& camera);
 
 /// A camera that frames a box as tightly as it can from a given side.
 /// @param direction     from the viewer towards the box [-]; (0, 0, 1) looks up from below
@@ -95,8 +95,8 @@ Camera look(const Box3& box, const Vec<3>& direction, const Vec<3>& up = {0, 0, 
 /// A sun, which casts shadows with soft borders, and a sky above, which reaches into gaps the less
 /// the deeper they are.
 struct Lights {
-  Vec<3> sun = Vec<3>(-0.45, -0.6, 0.9);  ///< direction towards the sun [-]
-  Vec<3> zenith = Vec<3>(0, 0, 1);        ///< direction towards the middle of the sky [-]
+  Vec<3> sun = Vec<3>(-0.45, -0.6, 0.9);  ///< direction towards the sun [-], any length > 0
+  Vec<3> zenith = Vec<3>(0, 0, 1);        ///< towards the middle of the sky [-], any length > 0
   double sun_radius = 0.06;               ///< angle between the sun's middle and its rim [rad]
   double sun_strength = 0.62;             ///< on a surface that faces it [-]
   double sky_strength = 0.55;             ///< on a surface that sees all of it [-]
@@ -135,7 +135,7 @@ void add_edges(Scene3& scene, const Box3& box, const Stroke& stroke = style::kEd
 class View3 {
  public:
   /// @param page rectangle that the picture fills [pt]; of the picture's proportions
-  /// @throws ContractError as axes(), or if the page or the camera's height is not positive
+  /// @throws ContractError as page_axes(), or if the page or the camera's height is not positive
   View3(const Camera& camera, const Box& page);
 
   /// @pre perspective: the point lies in front of the eye

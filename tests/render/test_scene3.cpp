@@ -344,6 +344,26 @@ TEST_SUITE("scene3") {
     }
   }
 
+  TEST_CASE("a line on the floor is seen for its whole width and length") {
+    for (const bool perspective : {false, true}) {
+      Scene3 one = scene(4, perspective);
+      one.camera.eye = {1, -5, 1.5};
+      const Vec<3> a(-1, -1, 0), b(1, 1, 0);
+      one.lines.push_back({a, b, {kBlack, 4}});
+      const double line = ink(paint_scene3(one, 200, 200));
+      one.floor = Floor{};
+
+      CHECK(ink(paint_scene3(one, 200, 200)) == line);
+
+      // Nor does it make the rest of the floor disappear.
+      one.balls.push_back({{0, 0, 1}, 0.5, kRed});
+      one.lights = {};
+      const double with_shadow = ink(paint_scene3(one, 200, 200));
+      one.floor.reset();
+      CHECK(with_shadow > ink(paint_scene3(one, 200, 200)) + 100);
+    }
+  }
+
   TEST_CASE("a pane tints what is behind it and not what is before") {
     for (const bool perspective : {false, true}) {
       Scene3 one = scene(4, perspective);
@@ -496,6 +516,9 @@ TEST_SUITE("scene3") {
     CHECK_THROWS_AS(paint_scene3(bad, 10, 10), ContractError);
     bad = good;
     bad.panes.push_back({{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}}});
+    CHECK_THROWS_AS(paint_scene3(bad, 10, 10), ContractError);
+    bad = good;
+    bad.lights.sun.setZero();
     CHECK_THROWS_AS(paint_scene3(bad, 10, 10), ContractError);
     CHECK_THROWS_AS(look({}, {0, 1, 0}), ContractError);
     CHECK(covered(good, 101) > 0);  // the painter is as good as before
