@@ -9,8 +9,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
-#include <memory>
-#include <mutex>
 
 // Every item becomes one instance of a quad that just covers it; the fragment shader computes the
 // signed distance to the shape and turns it into the covered share of the pixel. All items of a
@@ -41,7 +39,6 @@ enum Kind { kDisc, kCapsule, kPolygon, kMask, kImage };
 // Textures that grow by rows: polygon corners and label masks are addressed by texel.
 constexpr int kCornerRow = 1024;
 constexpr int kAtlasRow = 4096;
-constexpr int kLargest = 16384;  // llvmpipe's limit for textures
 
 const char* const kVertexShader = R"(#version 330 core
 layout(location = 0) in vec4 quad;
@@ -165,13 +162,6 @@ void main() {
 }
 )";
 
-const char* const kReduceVertexShader = R"(#version 330 core
-void main() {
-  vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);
-  gl_Position = vec4(4.0 * corner - 1.0, 0.0, 1.0);
-}
-)";
-
 const char* const kReduceFragmentShader = R"(#version 330 core
 uniform sampler2D fine;
 out vec4 colour;
@@ -186,46 +176,18 @@ std::array<std::uint8_t, 4> bytes(Colour c) {
   return {c.r, c.g, c.b, c.a};
 }
 
-// A framebuffer with one colour texture of 8 bits a channel.
-struct Target {
-  GLuint framebuffer = 0, texture = 0;
-  int width = 0, height = 0;
-
-  void resize(int w, int h) {
-    if (w == width && h == height) return;
-    if (framebuffer != 0) {
-      gl::DeleteFramebuffers(1, &framebuffer);
-      gl::DeleteTextures(1, &texture);
-    }
-    width = w;
-    height = h;
-    texture = gl::texture(GL_RGBA8, w, h, GL_RGBA, GL_UNSIGNED_BYTE, nullptr, GL_NEAREST);
-    gl::GenFramebuffers(1, &framebuffer);
-    gl::BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-    gl::FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
-    if (gl::CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-      width = height = 0;
-      throw SceneError("OpenGL has no memory for a picture of " + std::to_string(w) + " x " +
-                       std::to_string(h) + " samples");
-    }
-  }
-};
-
-// Context, programs and buffers, kept from picture to picture: making them costs as much as a
+// Programs and buffers, kept from picture to picture: making them costs as much as a
 // small figure.
 class Painter {
  public:
-  Painter() : context_(detail::make_context()) {
-    const Current current(*context_);
-    gl::load(*context_);
+  Painter() {
     const std::string version = "#version 330 core\n";
     for (std::size_t k = 0; k < only_.size(); ++k) {
       only_[k] = gl::program(kVertexShader,
                              version + "#define ONLY " + std::to_string(k) + kFragmentShader);
     }
     items_ = gl::program(kVertexShader, version + kFragmentShader);
-    reduce_ = gl::program(kReduceVertexShader, kReduceFragmentShader);
-    gl::GenVertexArrays(1, &empty_);
+    reduce_ = gl::program(gl::kWholeVertexShader, kReduceFragmentShader);
     gl::GenVertexArrays(1, &array_);
     gl::GenBuffers(1, &buffer_);
     gl::BindVertexArray(array_);
@@ -247,15 +209,12 @@ class Painter {
   Image paint(const DisplayList& list, double dpi, int samples) {
     const int width = std::max(1, static_cast<int>(std::lround(list.width * dpi / 72)));
     const int height = std::max(1, static_cast<int>(std::lround(list.height * dpi / 72)));
-    if (samples * std::max(width, height) > kLargest) {
+    if (samples * std::max(width, height) > gl::kLargest) {
       throw SceneError("a picture of " + std::to_string(width) + " x " + std::to_string(height) +
-                       " pixels is too large: at most " + std::to_string(kLargest / samples) +
+                       " pixels is too large: at most " + std::to_string(gl::kLargest / samples) +
                        " pixels along a side; choose fewer dots per inch");
     }
-    const Current current(*context_);
-    fine_.resize(samples * width, samples * height);
-    gl::BindFramebuffer(GL_FRAMEBUFFER, fine_.framebuffer);
-    gl::Viewport(0, 0, fine_.width, fine_.height);
+    fine_.bind(samples * width, samples * height);
     const Colour back = list.background;
     const float alpha = static_cast<float>(back.a) / 255;
     gl::ClearColor(alpha * static_cast<float>(back.r) / 255,
@@ -273,27 +232,15 @@ class Painter {
 
     gl::Disable(GL_BLEND);
     if (samples == 2) {
-      coarse_.resize(width, height);
-      gl::BindFramebuffer(GL_FRAMEBUFFER, coarse_.framebuffer);
-      gl::Viewport(0, 0, width, height);
+      coarse_.bind(width, height);
       gl::UseProgram(reduce_);
-      gl::BindVertexArray(empty_);
-      gl::ActiveTexture(GL_TEXTURE0);
-      gl::BindTexture(GL_TEXTURE_2D, fine_.texture);
-      gl::DrawArrays(GL_TRIANGLES, 0, 3);
+      gl::bind_texture(0, fine_.colour());
+      gl::draw_whole();
     }
-    return read(width, height);
+    return gl::read_image(width, height);
   }
 
  private:
-  struct Current {
-    detail::GlContext& context;
-    explicit Current(detail::GlContext& c) : context(c) { context.make_current(); }
-    ~Current() { context.release(); }
-    Current(const Current&) = delete;
-    Current& operator=(const Current&) = delete;
-  };
-
   // ---- from items to instances ----
 
   void begin(double scale) {
@@ -396,14 +343,14 @@ class Painter {
   void put(const Label& label) {
     const detail::Mask mask = detail::rasterise(label, scale_);
     if (mask.coverage.empty()) return;
-    if (mask.width > kAtlasRow || mask.height > kLargest) {
+    if (mask.width > kAtlasRow || mask.height > gl::kLargest) {
       throw SceneError("label \"" + label.text + "\": too large at this resolution");
     }
     if (shelf_x_ + mask.width > kAtlasRow) {
       shelf_y_ += shelf_height_;
       shelf_x_ = shelf_height_ = 0;
     }
-    if (shelf_y_ + mask.height > kLargest) flush();
+    if (shelf_y_ + mask.height > gl::kLargest) flush();
     shelf_height_ = std::max(shelf_height_, mask.height);
     const auto row = static_cast<std::size_t>(kAtlasRow);
     atlas_.resize(
@@ -467,10 +414,6 @@ class Painter {
 
   void flush() {
     if (instances_.empty()) return;
-    const auto bind = [](GLenum unit, GLuint texture) {
-      gl::ActiveTexture(unit);
-      gl::BindTexture(GL_TEXTURE_2D, texture);
-    };
     corners_.resize((corners_.size() / (2 * kCornerRow) + 1) * 2 * kCornerRow);
     gl::ActiveTexture(GL_TEXTURE0);
     const GLuint corner_texture =
@@ -479,9 +422,9 @@ class Painter {
     const GLuint atlas_texture =
         gl::texture(GL_R8, kAtlasRow, static_cast<int>(atlas_.size()) / kAtlasRow, GL_RED,
                     GL_UNSIGNED_BYTE, atlas_.data(), GL_NEAREST);
-    bind(GL_TEXTURE0, corner_texture);
-    bind(GL_TEXTURE1, atlas_texture);
-    bind(GL_TEXTURE2, image_texture_ != 0 ? image_texture_ : atlas_texture);
+    gl::bind_texture(0, corner_texture);
+    gl::bind_texture(1, atlas_texture);
+    gl::bind_texture(2, image_texture_ != 0 ? image_texture_ : atlas_texture);
 
     gl::BindVertexArray(array_);
     // Short runs of one kind share the general program, long ones have their own.
@@ -513,41 +456,17 @@ class Painter {
     gl::Uniform1i(at("atlas"), 1);
     gl::Uniform1i(at("image"), 2);
     gl::Uniform1i(at("image_enlarged"), image_enlarged_ ? 1 : 0);
-    gl::Uniform2f(at("page"), static_cast<float>(fine_.width), static_cast<float>(fine_.height));
+    gl::Uniform2f(at("page"), static_cast<float>(fine_.width()),
+                  static_cast<float>(fine_.height()));
     gl::BindBuffer(GL_ARRAY_BUFFER, buffer_);
     gl::BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>((end - first) * sizeof(Instance)),
                    instances_.data() + first, GL_STREAM_DRAW);
     gl::DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(end - first));
   }
 
-  // Pixels of the bound framebuffer, top row first, alpha made straight.
-  static Image read(int width, int height) {
-    Image image{width, height, {}};
-    const auto row = 4 * static_cast<std::size_t>(width), rows = static_cast<std::size_t>(height);
-    image.rgba.resize(row * rows);
-    gl::PixelStorei(GL_PACK_ALIGNMENT, 1);
-    gl::ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
-    const GLenum error = gl::GetError();
-    if (error != GL_NO_ERROR) throw SceneError("OpenGL error " + std::to_string(error));
-    for (std::size_t y = 0; y < rows / 2; ++y) {
-      std::swap_ranges(image.rgba.data() + y * row, image.rgba.data() + (y + 1) * row,
-                       image.rgba.data() + (rows - 1 - y) * row);
-    }
-    for (std::size_t k = 0; k < image.rgba.size(); k += 4) {
-      const int alpha = image.rgba[k + 3];
-      if (alpha == 255 || alpha == 0) continue;
-      for (std::size_t c = k; c < k + 3; ++c) {
-        image.rgba[c] =
-            static_cast<std::uint8_t>(std::min(255, (image.rgba[c] * 255 + alpha / 2) / alpha));
-      }
-    }
-    return image;
-  }
-
-  std::unique_ptr<detail::GlContext> context_;
   std::array<GLuint, 3> only_{};  // programs for long runs of discs, capsules, polygons
-  GLuint items_ = 0, reduce_ = 0, array_ = 0, empty_ = 0, buffer_ = 0;
-  Target fine_, coarse_;
+  GLuint items_ = 0, reduce_ = 0, array_ = 0, buffer_ = 0;
+  gl::Target fine_{GL_RGBA8, 0}, coarse_{GL_RGBA8, 0};
 
   double scale_ = 1;  // samples per point
   std::vector<Instance> instances_;
@@ -565,9 +484,8 @@ Image paint_rgba(const DisplayList& list, double dpi, Quality quality) {
   LAGRAIN_EXPECTS(list.width > 0 && list.height > 0 && dpi > 0,
                   "paint_rgba: a page of " + std::to_string(list.width) + " x " +
                       std::to_string(list.height) + " pt at " + std::to_string(dpi) + " dpi");
-  static std::mutex mutex;
-  const std::lock_guard lock(mutex);
-  // Never destroyed: at exit the OpenGL library may be gone before us.
+  const gl::Current current;
+  // Never destroyed, like the context.
   static Painter* const painter = new Painter;
   return painter->paint(list, dpi, quality == Quality::still ? 2 : 1);
 }
