@@ -2,7 +2,6 @@
 /// @file
 /// Small scenes, as text.
 
-#include <regex>
 #include <stdexcept>
 #include <string>
 
@@ -63,13 +62,19 @@ inline std::string with(std::string text, const std::string& part, const std::st
 /// A scene of discs as one of spheres: every place and direction gets a second component like its
 /// first, on the same line, and the layers of the heap are filled. In the plane, the text as it is.
 template <int Dim>
-std::string in_space(const std::string& text) {
+std::string in_space(std::string text) {
   if (Dim == 2) return text;
-  static const std::regex kVector(
-      R"(((gravity|velocity|position|point|normal|from|to|low|high|amplitude|load) = \[)([^,\]]+), )");
-  const std::string text3 = std::regex_replace(text, kVector, "$1$3, $3, ");
-  return with(std::regex_replace(text3, std::regex("count = 12"), "count = 48"), "dimension = 2",
-              "dimension = 3");
+  for (const std::string key : {"gravity", "velocity", "position", "point", "normal", "from", "to",
+                                "low", "high", "amplitude", "load"}) {
+    const std::string head = key + " = [";
+    for (std::size_t at = 0; (at = text.find(head, at)) != std::string::npos;) {
+      at += head.size();
+      const std::string first = text.substr(at, text.find(',', at) - at);
+      text.insert(at, first + ", ");
+    }
+  }
+  if (text.find("count = 12") != std::string::npos) text = with(text, "count = 12", "count = 48");
+  return with(text, "dimension = 2", "dimension = 3");
 }
 
 inline std::string without(const std::string& text, const std::string& line) {
