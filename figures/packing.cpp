@@ -1,0 +1,307 @@
+#include "packing.hpp"
+
+#include "scene_run.hpp"
+
+#include <lagrain/laguerre3.hpp>
+#include <lagrain/output.hpp>
+#include <lagrain/paint.hpp>
+#include <lagrain/style.hpp>
+#include <lagrain/triangulation3.hpp>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+namespace lagrain::figures {
+
+namespace {
+
+constexpr double kSampleEvery = 0.002;  // [s]
+
+double solid_volume(const Eigen::VectorXd& radius) {
+  return 4.0 / 3 * std::numbers::pi * radius.array().cube().sum();
+}
+
+/// The inside of a box of half-spaces, each of which bounds it on one side.
+Eigen::AlignedBox3d inside_of(const std::vector<Wall<3>>& walls) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  Eigen::AlignedBox3d box(Vec<3>::Constant(-kFar), Vec<3>::Constant(kFar));
+  for (const Wall<3>& wall : walls) {
+    const Vec<3>& normal = std::get<HalfSpace<3>>(wall.shape).normal;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (normal[axis] > 0.5) box.min()[axis] = std::max(box.min()[axis], wall.point[axis]);
+      if (normal[axis] < -0.5) box.max()[axis] = std::min(box.max()[axis], wall.point[axis]);
+    }
+  }
+  return box;
+}
+
+class Runner {
+ public:
+  Runner(const PackingJob& job, const std::atomic<bool>& stop, std::atomic<double>& done)
+      : job_(job), stop_(stop), done_(done) {}
+
+  Packing run() {
+    const auto start = std::chrono::steady_clock::now();
+    const std::unique_ptr<Run<3>> run = make_scene_run(job_.scene);
+    Packing packing;
+    packing.name = job_.name;
+    const double solid = solid_volume(run->radii());
+    double next = 0;
+    while (!run->finished()) {
+      if (stop_) return packing;
+      run->step();
+      if (run->time() < next && !run->finished()) continue;
+      next += kSampleEvery;
+      packing.time.push_back(run->time());
+      packing.density.push_back(solid / inside_of(run->walls()).volume());
+      packing.largest_overlap =
+          std::max(packing.largest_overlap, run->statistics().largest_overlap);
+      done_ = run->time() / job_.scene.duration;
+    }
+    packing.position = run->positions();
+    packing.radius = run->radii();
+    packing.box = inside_of(run->walls());
+    std::tie(packing.bulk, packing.bulk_count) =
+        bulk_density(packing.position, packing.radius, packing.box);
+    packing.contacts = run->contacts();
+    packing.statistics = run->statistics();
+    packing.audited = run->audit().contacts();
+    packing.missed = run->audit().missed();
+    packing.steps = run->steps();
+    if (const TriangulationCost* cost = run->neighbourhood().cost()) packing.cost = *cost;
+    packing.edges_per_site = static_cast<double>(run->neighbourhood().edges()) / run->count();
+    packing.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    packing.neighbourhood_share = run->neighbourhood_seconds() / packing.seconds;
+    const Ledger ledger = run->ledger();
+    packing.residual_share = run->energy_residual() / (ledger.dashpot + ledger.friction);
+    return packing;
+  }
+
+ private:
+  const PackingJob& job_;
+  const std::atomic<bool>& stop_;
+  std::atomic<double>& done_;
+};
+
+/// One row per sample.
+std::string density_csv(const std::vector<Packing>& packings) {
+  std::string text = "packing,time[s],density[-]\n";
+  for (const Packing& p : packings) {
+    for (std::size_t k = 0; k < p.time.size(); ++k) {
+      text += "\"" + p.name + "\"," + shortest(p.time[k]) + "," + shortest(p.density[k]) + "\n";
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+Scene<3> packing_scene(const FigureOptions& options, const std::string& file) {
+  Scene<3> scene = read_scene<3>(options.scenes / file);
+  if (!options.quick) return scene;
+  for (Fill<3>& fill : scene.fills) {
+    fill.count = *fill.count / 8;
+    fill.radius = 2 * std::get<double>(fill.radius);
+  }
+  scene.law.stiffness *= 2;  // proportional to the radius
+  return scene;
+}
+
+Scene<3> shaken(Scene<3> scene, double seconds) {
+  const double stop = kShakeStart + std::round(seconds * kShakeFrequency) / kShakeFrequency;
+  for (Wall<3>& wall : scene.walls) {
+    if (wall.moves()) continue;
+    wall.motion =
+        Shake<3>{Vec<3>(kShakeAmplitude, 0, kShakeAmplitude), kShakeFrequency, kShakeStart, stop};
+  }
+  scene.duration = stop + kRest;
+  return scene;
+}
+
+Scene<3> with_friction(Scene<3> scene, double friction) {
+  scene.law.friction = friction;
+  if (friction == 0) scene.friction = FrictionModel::none;
+  return scene;
+}
+
+std::vector<Packing> run_packings(const std::vector<PackingJob>& jobs,
+                                  const FigureOptions& options,
+                                  const std::filesystem::path& csv) {
+  static std::map<std::string, Packing> kept;  // by the scene that was run
+  std::vector<std::string> keys;
+  std::vector<std::size_t> open;
+  for (std::size_t k = 0; k < jobs.size(); ++k) {
+    const std::string key = to_toml(jobs[k].scene);
+    if (!kept.contains(key) && std::find(keys.begin(), keys.end(), key) == keys.end()) {
+      open.push_back(k);
+    }
+    keys.push_back(key);
+  }
+
+  std::vector<Packing> results(jobs.size());
+  std::vector<std::atomic<double>> done(jobs.size());
+  std::atomic<bool> stop = false;
+  std::atomic<std::size_t> next = 0, finished = 0;
+  std::mutex failure_guard;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    for (std::size_t k = next++; k < open.size(); k = next++) {
+      try {
+        results[open[k]] = Runner(jobs[open[k]], stop, done[open[k]]).run();
+      } catch (...) {
+        const std::lock_guard lock(failure_guard);
+        if (!failure) failure = std::current_exception();
+        stop = true;
+      }
+      ++finished;
+    }
+  };
+  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+  std::vector<std::jthread> threads;
+  for (std::size_t k = 0; k < std::min(cores, open.size()); ++k) threads.emplace_back(work);
+  while (finished < open.size()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    if (options.stop()) stop = true;
+    double sum = 0;
+    for (const std::size_t k : open) sum += done[k];
+    options.progress(sum / static_cast<double>(open.size()),
+                     std::to_string(open.size()) + " packings");
+  }
+  threads.clear();
+  if (stop || failure) write_file(csv, density_csv(results));
+  if (failure) std::rethrow_exception(failure);
+  if (stop) throw Interrupted();
+  for (const std::size_t k : open) kept[keys[k]] = results[k];
+  for (std::size_t k = 0; k < jobs.size(); ++k) {
+    results[k] = kept.at(keys[k]);
+    results[k].name = jobs[k].name;
+  }
+  write_file(csv, density_csv(results));
+  return results;
+}
+
+std::pair<double, int> bulk_density(const Columns<3>& position, const Eigen::VectorXd& radius,
+                                    const Eigen::AlignedBox3d& box) {
+  Triangulation<3> triangulation;
+  triangulation.build(position, radius.array().square().matrix());
+  const double margin = 3 * radius.maxCoeff();
+  double solid = 0, cells = 0;
+  int count = 0;
+  for (int i = 0; i < triangulation.size(); ++i) {
+    const Vec<3> x = position.col(i);
+    if (((x - box.min()).array() < margin).any() || ((box.max() - x).array() < margin).any()) {
+      continue;
+    }
+    solid += 4.0 / 3 * std::numbers::pi * std::pow(radius[i], 3);
+    cells += polyhedron_volume(laguerre_cell(triangulation, i, box));
+    ++count;
+  }
+  return {solid / cells, count};
+}
+
+std::string packing_csv(const Packing& packing) {
+  std::string text = "x[m],y[m],z[m],radius[m]\n";
+  for (Eigen::Index i = 0; i < packing.position.cols(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) text += shortest(packing.position(axis, i)) + ",";
+    text += shortest(packing.radius[i]) + "\n";
+  }
+  return text;
+}
+
+Series density_series(const Packing& packing, int index, double from) {
+  Series series = series_style(index);
+  series.name = packing.name;
+  for (std::size_t k = 0; k < packing.time.size(); ++k) {
+    if (packing.time[k] < from) continue;
+    series.x.push_back(packing.time[k]);
+    series.y.push_back(packing.density[k]);
+  }
+  return series;
+}
+
+void add_packing(DisplayList& list, const Vec<2>& low, double width, const Packing& packing,
+                 ColourBy by, bool quick, const std::vector<std::string>& text) {
+  Scene3 scene;
+  const Box3 whole{packing.box.min(), {packing.box.max().x(), packing.box.max().y(),
+                                       std::max(1.0, packing.box.max().z())}};
+  const double smallest = packing.radius.minCoeff();
+  for (Eigen::Index i = 0; i < packing.radius.size(); ++i) {
+    const Vec<3> x = packing.position.col(i);
+    const Colour tint = by == ColourBy::height
+                            ? colour(ColourMap::viridis, (x.z() - whole.low.z()) / whole.size().z())
+                        : packing.radius[i] > 1.01 * smallest ? mix(category(0), style::kPaper, 0.2)
+                                                              : mix(category(1), style::kPaper, 0.2);
+    scene.balls.push_back({x, packing.radius[i], tint});
+  }
+  add_edges(scene, whole);
+  const Vec<3> a = packing.box.min(), b = packing.box.max();
+  const std::array<Vec<3>, 4> piston{Vec<3>(a.x(), a.y(), b.z()), Vec<3>(b.x(), a.y(), b.z()),
+                                     Vec<3>(b.x(), b.y(), b.z()), Vec<3>(a.x(), b.y(), b.z())};
+  scene.panes.push_back({piston});
+  for (std::size_t k = 0; k < 4; ++k) {
+    scene.lines.push_back({piston[k], piston[(k + 1) % 4], {style::kWall, style::kMedium}});
+  }
+  scene.floor = Floor{whole.low.z()};
+  scene.camera = look(whole, {0.5, 0.8, -0.4}, {0, 0, 1}, 1, 0.4);
+  scene.subframes = quick ? kPreviewSubframes : kPrintSubframes;
+  list.add(paint_scene3(scene, Box{low, low + Vec<2>(width, width)}));
+  double y = low[1] - 2;
+  for (const std::string& line : text) {
+    list.add(Label{.text = line,
+                   .at = {low[0] + width / 2, y},
+                   .size = style::kText,
+                   .across = Across::centre,
+                   .along = Along::top});
+    y -= 11;
+  }
+}
+
+std::vector<Fact> packing_facts(const std::vector<Packing>& packings) {
+  std::int64_t audited = 0, missed = 0, steps = 0, grain_steps = 0;
+  double seconds = 0, overlap = 0, share = 0, residual = 0;
+  TriangulationCost cost;
+  for (const Packing& p : packings) {
+    audited += p.audited;
+    missed += p.missed;
+    steps += p.steps;
+    grain_steps += p.steps * p.radius.size();
+    seconds += p.seconds;
+    share += p.neighbourhood_share * p.seconds;
+    overlap = std::max(overlap, p.largest_overlap);
+    residual = std::max(residual, std::abs(p.residual_share));
+    cost.ladder += p.cost.ladder;
+    cost.updates += p.cost.updates;
+    cost.moved += p.cost.moved;
+    cost.searched += p.cost.searched;
+  }
+  return {
+      {"runs", std::to_string(packings.size()) + ", " + std::to_string(steps) + " steps"},
+      {"time",
+       rounded(seconds) + " s of one core, " +
+           rounded(1e9 * seconds / static_cast<double>(grain_steps)) +
+           " ns per grain and step, audit included; " + rounded(100 * share / seconds, 2) +
+           " % of it for the neighbourhood"},
+      {"contacts audited", std::to_string(audited)},
+      {"contacts missed", std::to_string(missed)},
+      {"largest overlap at any sample", rounded(100 * overlap, 2) + " % of the smaller radius"},
+      {"largest energy residual", rounded(100 * residual, 2) + " % of what was dissipated"},
+      {"triangulation updates", std::to_string(cost.updates) + ", " + std::to_string(cost.moved) +
+                                    " grains moved, " + std::to_string(cost.ladder.flips) +
+                                    " flips"},
+      {"repairs", std::to_string(cost.ladder.extracted) + " grains taken out, " +
+                      std::to_string(cost.ladder.unstuck) + " cavities filled anew, " +
+                      std::to_string(cost.ladder.rebuilds) + " rebuilds, " +
+                      std::to_string(cost.searched) + " range searches"}};
+}
+
+}  // namespace lagrain::figures
