@@ -86,7 +86,11 @@ std::vector<Triangulation<3>::Defect> Triangulation<3>::audit() const {
   if (counted != vertices || counted - ends / 2 + topology_.cells() != 0) {
     report(-1, kNobody, "Euler's relation fails");
   }
-  if (!hull_goes_round_once()) report(-1, kNobody, "the hull does not go round once");
+  if (!thin_ && !sees_whole_hull()) {
+    report(-1, kNobody, "the point in the middle lies outside the hull");
+  } else if (!thin_ && !hull_goes_round_once()) {
+    report(-1, kNobody, "the hull does not go round once");
+  }
   for (const int id : hidden_) {
     const int t = locate(id, visible_from(id));
     if (topology_.infinite(t) || conflict(t, id)) {

@@ -57,7 +57,7 @@ void Triangulation<3>::rebuild() {
   topology_.reserve_cells(7 * present.size());
   hidden_.clear();
   insert_all(present, nullptr);
-  choose_middle();
+  choose_middle_at_rest();
   std::sort(hidden_.begin(), hidden_.end());
 }
 
@@ -296,6 +296,16 @@ bool Triangulation<3>::refill(std::span<const int> hole, std::span<const int> si
       small.topology_.set_mark(beyond);
       inside_.push_back(beyond);
     }
+  }
+
+  // If no tetrahedron is left the rest is flat, and only seen from both sides.
+  const auto solid = [](const Topology3& topology, int cell) { return !topology.infinite(cell); };
+  if (std::none_of(inside_.begin(), inside_.end(),
+                   [&](int cell) { return solid(small.topology_, cell); }) &&
+      std::none_of(facets_.begin(), facets_.end(), [&](const CavityFacet& facet) {
+        return solid(topology_, facet.outside >> 2);
+      })) {
+    return false;
   }
 
   // Copy the inside.

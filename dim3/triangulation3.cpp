@@ -124,7 +124,7 @@ UpdateReport Triangulation<3>::remove(int id) {
   const bool taken = !tiny() && take_out(id, sites_.data());
   topology_.set_corner_of(id, Topology3::kNone);
   if (taken) {
-    if (hull_touched_) choose_middle();
+    if (hull_touched_) choose_middle_at_rest();
     try_hidden();
   } else {
     // Below kTiny a build is the ordinary way.

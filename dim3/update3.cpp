@@ -42,20 +42,36 @@ bool Triangulation<3>::moved_place(int id) const {
 }
 
 bool Triangulation<3>::tiny() const {
-  return dimension_ < 3 || present_ - static_cast<int>(hidden_.size()) < kTiny;
+  return dimension_ < 3 || thin_ || present_ - static_cast<int>(hidden_.size()) < kTiny;
 }
 
 /// A point to see the hull from: the mean of the visible sites, auxiliary ones included.
 void Triangulation<3>::choose_middle() {
+  const Site3* first = nullptr;
   double x = 0, y = 0, z = 0, count = 0;
   for (int id = 0; id < size_ + 3; ++id) {
     if (topology_.corner_of(id) < 0) continue;
-    x += sites_[index(id)].x;
-    y += sites_[index(id)].y;
-    z += sites_[index(id)].z;
+    // Relative to one of them, so that a far origin costs no digits.
+    const Site3& s = sites_[index(id)];
+    if (first == nullptr) first = &s;
+    x += s.x - first->x;
+    y += s.y - first->y;
+    z += s.z - first->z;
     ++count;
   }
-  middle_ = {x / count, y / count, z / count, 0};
+  if (first == nullptr) return;
+  middle_ = {first->x + x / count, first->y + y / count, first->z + z / count, 0};
+}
+
+/// The same for a triangulation at rest, whose hull the mean may miss by rounding only.
+void Triangulation<3>::choose_middle_at_rest() {
+  choose_middle();
+  thin_ = dimension_ >= 0 && !sees_whole_hull();
+}
+
+bool Triangulation<3>::sees_whole_hull() const {
+  topology_.star(Topology3::kInfinite, star_);
+  return std::all_of(star_.begin(), star_.end(), [&](int at) { return positive(at >> 2); });
 }
 
 /// Infinite cells that are all positive cover the directions from the middle a whole number of
@@ -454,13 +470,26 @@ bool Triangulation<3>::extract_inverted() {
     hull_touched_ = hull_touched_ || topology_.infinite(cell);
     look(cell);
   }
-  if (std::any_of(inverted_.begin(), inverted_.end(),
-                  [&](int cell) { return topology_.infinite(cell); })) {
+  const auto infinite = [&](int cell) { return topology_.infinite(cell); };
+  if (std::any_of(inverted_.begin(), inverted_.end(), infinite)) {
     // Is it the hull or the point it is seen from?
+    const Site3 before = middle_;
+    const auto look_at_hull = [&] {
+      std::erase_if(inverted_, infinite);
+      topology_.star(Topology3::kInfinite, star_);
+      for (const int at : star_) look(at >> 2);
+    };
     choose_middle();
-    std::erase_if(inverted_, [&](int cell) { return topology_.infinite(cell); });
-    topology_.star(Topology3::kInfinite, star_);
-    for (const int at : star_) look(at >> 2);
+    look_at_hull();
+    // A site thrown far takes the mean with it, out of the hull of those at rest.
+    if (std::any_of(inverted_.begin(), inverted_.end(), [&](int cell) {
+          const Quad& v = topology_.vertices(cell);
+          return infinite(cell) &&
+                 std::none_of(v.begin(), v.end(), [&](int id) { return moved_place(id); });
+        })) {
+      middle_ = before;
+      look_at_hull();
+    }
   }
 
   const std::int64_t most = present_ / 6;  // about where a build is cheaper
@@ -479,7 +508,7 @@ bool Triangulation<3>::extract_inverted() {
     if (unresolved_.empty()) return true;
     undo_flips();
     touched_.resize(first);
-    choose_cover(unresolved_);
+    if (!choose_cover(unresolved_)) return false;
     if (report_.extracted + static_cast<std::int64_t>(cover_.size()) > most) return false;
     for (const int site : cover_) {
       const int hint = finite_neighbour(site);
@@ -496,9 +525,11 @@ bool Triangulation<3>::extract_inverted() {
 
 /// A small set of moved sites with at least one in each of the cells: where there is a choice, the
 /// site that occurs most often, as one that strayed far inverts several.
-void Triangulation<3>::choose_cover(std::span<const int> cells) {
+/// @return false if one has none: an infinite cell that the point in the middle has left
+bool Triangulation<3>::choose_cover(std::span<const int> cells) {
   constexpr int kChosen = -1;
   cover_.clear();
+  bool complete = true;
   for (const int cell : cells) {
     for (const int id : topology_.vertices(cell)) {
       if (moved_place(id)) ++site_note_[index(id)];
@@ -512,7 +543,8 @@ void Triangulation<3>::choose_cover(std::span<const int> cells) {
       if (site_note_[index(id)] == kChosen) covered = true;
       if (best < 0 || site_note_[index(id)] > site_note_[index(best)]) best = id;
     }
-    if (covered) continue;
+    complete = complete && best >= 0;
+    if (covered || best < 0) continue;
     site_note_[index(best)] = kChosen;
     cover_.push_back(best);
   }
@@ -521,6 +553,7 @@ void Triangulation<3>::choose_cover(std::span<const int> cells) {
       if (id >= 0) site_note_[index(id)] = 0;
     }
   }
+  return complete;
 }
 
 /// Tries every hidden site. One pass is enough: an insertion only hides others.

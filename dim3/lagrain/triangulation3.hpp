@@ -57,8 +57,9 @@ namespace lagrain {
 ///
 /// Representation: Topology3, about 300 bytes per site. Flat sets are legal: a set of dimension() k
 /// < 3 is joined to 3 - k auxiliary sites outside it. The cone over a regular triangulation is
-/// regular wherever its apex is, so no test and no flip needs a case of its own. Such sets, and
-/// sets with fewer than kTiny visible sites, are built anew at every change.
+/// regular wherever its apex is, so no test and no flip needs a case of its own. Such sets, sets so
+/// thin that rounding finds no point inside, and sets with fewer than kTiny visible sites are built
+/// anew at every change.
 ///
 /// Limits: coordinates between 1e-60 and 1e60 in size go fast, others through exact arithmetic; not
 /// safe for use from several threads, for_each_edge and for_each_neighbour included (they keep
@@ -187,6 +188,8 @@ class Triangulation<3> {
   int locate(int site, int hint) const;
   int finite_neighbour(int site) const;
   void choose_middle();
+  void choose_middle_at_rest();
+  bool sees_whole_hull() const;
   void collect_vertices(std::span<const int> corners, std::vector<int>& vertices) const;
   void find_edges() const;
 
@@ -218,7 +221,7 @@ class Triangulation<3> {
   static void sort_unique(std::vector<int>& list);
   void collect_around(std::span<const int> moved);
   bool extract_inverted();
-  void choose_cover(std::span<const int> cells);
+  bool choose_cover(std::span<const int> cells);
   void try_hidden();
   UpdateReport finish();
 
@@ -229,7 +232,8 @@ class Triangulation<3> {
   std::vector<int> hidden_;     // sorted at rest
   int present_ = 0;
   int dimension_ = -1;
-  Site3 middle_{};  // strictly within the hull
+  Site3 middle_{};     // strictly within the hull
+  bool thin_ = false;  // unless rounding finds no such point
 
   mutable std::vector<std::array<int, 2>> edges_;
   mutable bool edges_known_ = false;

@@ -6,36 +6,20 @@
 #include <lagrain/random.hpp>
 #include <lagrain/triangulation2.hpp>
 
+#include "support/site_sets.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <string>
-#include <tuple>
-#include <utility>
 #include <vector>
 
 namespace lagrain::test {
 
-struct Sites {
-  std::string name;
-  Columns<2> x;       ///< 2 x N
-  Eigen::VectorXd w;  ///< N
-  double r = 1;       ///< a typical radius
+using Sites = SiteSet<2>;
 
-  int size() const { return static_cast<int>(w.size()); }
-};
-
-inline Sites make_sites(const std::string& name, const std::vector<std::array<double, 3>>& rows,
-                        double r = 1) {
-  Sites s{name, Columns<2>(2, static_cast<Eigen::Index>(rows.size())),
-          Eigen::VectorXd(static_cast<Eigen::Index>(rows.size())), r};
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    s.x.col(i) << rows[k][0], rows[k][1];
-    s.w[i] = rows[k][2];
-  }
-  return s;
+inline Sites make_sites(const std::string& name, const Rows<2>& rows, double r = 1) {
+  return site_set<2>(name, rows, r);
 }
 
 /// Jittered square lattice of discs that do not overlap; spacing 2.
@@ -111,12 +95,6 @@ inline Sites size_ratio(Random& random, int count) {
   return make_sites("size ratio 1000", rows, 0.001);
 }
 
-inline Sites far_away(Sites s) {
-  s.name += ", far away";
-  s.x.array() += 1e6 * s.r;
-  return s;
-}
-
 /// Every kind once, small enough for quadratic tests.
 inline std::vector<Sites> all_kinds(Random& random) {
   std::vector<Sites> kinds;
@@ -134,29 +112,7 @@ inline std::vector<Sites> all_kinds(Random& random) {
   return kinds;
 }
 
-inline std::vector<int> all_ids(int count) {
-  std::vector<int> ids(static_cast<std::size_t>(count));
-  std::iota(ids.begin(), ids.end(), 0);
-  return ids;
-}
-
-inline std::vector<int> some_ids(Random& random, int count, double fraction) {
-  std::vector<int> ids;
-  for (int i = 0; i < count; ++i) {
-    if (random.uniform() < fraction) ids.push_back(i);
-  }
-  return ids;
-}
-
-using Edge = std::pair<int, int>;
 using Triple = std::array<int, 3>;
-
-inline std::vector<Edge> edges(const Triangulation<2>& t) {
-  std::vector<Edge> list;
-  t.for_each_edge([&](int i, int j) { list.emplace_back(i, j); });
-  std::sort(list.begin(), list.end());
-  return list;
-}
 
 /// Sorted, each triangle turned so that its least id comes first.
 inline std::vector<Triple> triangles(const Triangulation<2>& t) {
@@ -170,32 +126,10 @@ inline std::vector<Triple> triangles(const Triangulation<2>& t) {
   return list;
 }
 
-inline std::vector<int> hidden(const Triangulation<2>& t) {
-  return {t.hidden().begin(), t.hidden().end()};
-}
-
 /// Triangle for triangle, edge for edge, hidden site for hidden site.
 inline bool same(const Triangulation<2>& a, const Triangulation<2>& b) {
   return a.dimension() == b.dimension() && triangles(a) == triangles(b) && edges(a) == edges(b) &&
          hidden(a) == hidden(b);
-}
-
-inline Triangulation<2> built(const Sites& s) {
-  Triangulation<2> t;
-  t.build(s.x, s.w);
-  return t;
-}
-
-/// The sentences of an audit, for the message of a failed check.
-inline std::string audited(const Triangulation<2>& t) {
-  std::string text;
-  for (const auto& defect : t.audit()) {
-    text += std::to_string(defect.simplex) + " (" + std::to_string(defect.sites[0]) + " " +
-            std::to_string(defect.sites[1]) + " " + std::to_string(defect.sites[2]) + ") " +
-            defect.sentence + "; ";
-    if (text.size() > 500) break;
-  }
-  return text;
 }
 
 }  // namespace lagrain::test

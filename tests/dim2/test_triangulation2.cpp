@@ -14,41 +14,6 @@
 using namespace lagrain;
 using test::Edge;
 
-namespace {
-
-/// T equals a triangulation of the same sites built from nothing, and its audit is empty.
-#define CHECK_AS_BUILT(t, sites)              \
-  do {                                        \
-    CHECK(test::audited(t) == "");            \
-    CHECK(test::same(t, test::built(sites))); \
-  } while (false)
-
-test::Sites displaced(const test::Sites& s, const std::vector<int>& ids, double distance,
-                      Random& random) {
-  test::Sites moved = s;
-  for (const int i : ids) {
-    const double angle = random.uniform(0, 2 * std::numbers::pi);
-    moved.x.col(i) += distance * Vec<2>(std::cos(angle), std::sin(angle));
-  }
-  return moved;
-}
-
-/// Brute force: pairs that touch and are not edges.
-int missed_contacts(const Triangulation<2>& t, const test::Sites& s) {
-  const auto list = test::edges(t);
-  int missed = 0;
-  for (int i = 0; i < s.size(); ++i) {
-    for (int j = i + 1; j < s.size(); ++j) {
-      const double reach = std::sqrt(s.w[i]) + std::sqrt(s.w[j]);
-      if ((s.x.col(i) - s.x.col(j)).norm() > reach) continue;
-      missed += !std::binary_search(list.begin(), list.end(), Edge{i, j});
-    }
-  }
-  return missed;
-}
-
-}  // namespace
-
 TEST_SUITE("triangulation2") {
   TEST_CASE("sites inserted one by one into nothing give the triangulation that build gives") {
     for (int seed = 0; seed < test::cases(10, 300); ++seed) {
@@ -80,7 +45,7 @@ TEST_SUITE("triangulation2") {
             CAPTURE(fraction);
             auto ids = test::some_ids(random, s.size(), fraction);
             if (ids.empty()) ids = {random.below(s.size())};
-            const test::Sites there = displaced(s, ids, distance * s.r, random);
+            const test::Sites there = test::displaced(s, ids, distance * s.r, random);
 
             UpdateReport report = t.move(ids, there.x, there.w);
             CHECK_AS_BUILT(t, there);
@@ -355,8 +320,8 @@ TEST_SUITE("contacts in the triangulation") {
       return test::make_sites("", {{0.9999, 0, 1}, {-0.9999, 0, 1}, {0, half, 1}, {0, -half, 1}});
     };
 
-    CHECK(missed_contacts(test::built(square(1.00015)), square(1.00015)) == 0);
-    CHECK(missed_contacts(test::built(square(0.9998)), square(0.9998)) == 1);
+    CHECK(test::missed_contacts(test::built(square(1.00015)), square(1.00015)) == 0);
+    CHECK(test::missed_contacts(test::built(square(0.9998)), square(0.9998)) == 1);
   }
 
   TEST_CASE("every contact is an edge while overlaps stay below 0.58 of the smaller radius") {
@@ -381,7 +346,7 @@ TEST_SUITE("contacts in the triangulation") {
 
       const auto t = test::built(s);
 
-      CHECK(missed_contacts(t, s) == 0);
+      CHECK(test::missed_contacts(t, s) == 0);
       CHECK(t.hidden().empty());
       ++contacts_checked;
     }

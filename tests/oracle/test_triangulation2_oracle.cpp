@@ -70,15 +70,6 @@ Answer ask(const test::Sites& s, const std::vector<int>& ids) {
   return answer;
 }
 
-std::vector<int> visible(const Triangulation<2>& t) {
-  std::vector<int> list;
-  const auto hidden = t.hidden();
-  for (int i = 0; i < t.size(); ++i) {
-    if (t.contains(i) && !std::binary_search(hidden.begin(), hidden.end(), i)) list.push_back(i);
-  }
-  return list;
-}
-
 /// No site is strictly in conflict with any triangle, by CGAL's own test.
 bool power_valid(const Triangulation<2>& t, const test::Sites& s, const std::vector<int>& ids) {
   bool valid = true;
@@ -102,7 +93,7 @@ void check_against_cgal(const Triangulation<2>& t, const test::Sites& s,
   if (general) {
     CHECK(!answer.ties);
     CHECK(ours == answer.edges);
-    CHECK(visible(t) == answer.visible);
+    CHECK(test::visible(t) == answer.visible);
   }
 }
 
