@@ -61,9 +61,7 @@
   X(Uniform1fv, PFNGLUNIFORM1FVPROC)                           \
   X(Uniform1i, PFNGLUNIFORM1IPROC)                             \
   X(Uniform2f, PFNGLUNIFORM2FPROC)                             \
-  X(Uniform3f, PFNGLUNIFORM3FPROC)                             \
   X(Uniform3fv, PFNGLUNIFORM3FVPROC)                           \
-  X(Uniform4f, PFNGLUNIFORM4FPROC)                             \
   X(Uniform4fv, PFNGLUNIFORM4FVPROC)                           \
   X(UniformMatrix3fv, PFNGLUNIFORMMATRIX3FVPROC)               \
   X(UseProgram, PFNGLUSEPROGRAMPROC)                           \
