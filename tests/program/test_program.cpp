@@ -156,19 +156,18 @@ TEST_SUITE("program") {
     CHECK(holds(
         refused("s.toml", with(kHeap, "count = 12", "count = 1000\narrangement = \"random\"")),
         "\"fill 1\": a solid fraction of 1"));
-    CHECK(refused("s.toml", in_space<3>(kOnTriangulation)) ==
-          "lagrain: s.toml:9: neighbourhood: spheres have no triangulation yet; expected \"linked "
-          "cells\" or \"all pairs\"\n");
   }
 
   TEST_CASE("spheres run like discs: folder, resolved scene, explanation") {
     const Place place;
     place.write("heap.toml", in_space<3>(kHeap));
     place.write("pairs.toml", in_space<3>(with(kHeap, "linked cells", "all pairs")));
+    place.write("t.toml", in_space<3>(kOnTriangulation));
 
     REQUIRE(place.run({"run", "heap.toml", "--out", "a"}) == 0);
     REQUIRE(place.run({"run", "a/scene.toml", "--out", "b"}) == 0);
     REQUIRE(place.run({"run", "pairs.toml", "--out", "c"}) == 0);
+    REQUIRE(place.run({"run", "t.toml", "--out", "d"}) == 0);
     REQUIRE(place.run({"run", "--explain", "heap.toml"}) == 0);
 
     CHECK(content(place / "a/series.csv") == content(place / "b/series.csv"));
@@ -276,9 +275,7 @@ TEST_SUITE("program") {
       if (scene_dimension(entry.path()) == 2) {
         check_start(read_scene<2>(entry.path()));
       } else {
-        Scene<3> scene = read_scene<3>(entry.path());
-        scene.neighbourhood = NeighbourhoodModel::linked_cells;
-        check_start(scene);
+        check_start(read_scene<3>(entry.path()));
       }
     }
   }
