@@ -70,9 +70,15 @@ FigureResult draw_figure6(const FigureOptions& options) {
     frictions.push_back(mu);
     jobs.push_back({"friction " + shortest(mu), with_friction(base, mu)});
   }
-  const std::vector<Packing> packings = run_packings(jobs, options, options.out / "fig6_density.csv");
+  const std::size_t sweep_end = jobs.size();
+  for (std::size_t k = 1; k < kRows.size(); ++k) {
+    jobs.push_back({jobs[k].name + ", rough", with_friction(jobs[k].scene, kFrictions.back())});
+  }
+  const std::vector<Packing> packings =
+      run_packings(jobs, options, options.out / "fig6_density.csv");
   const Packing& shook = packings[3];
-  const std::vector<Packing> swept(packings.begin() + 4, packings.end());
+  const std::vector<Packing> swept(packings.begin() + 4,
+                                   packings.begin() + static_cast<std::ptrdiff_t>(sweep_end));
 
   const double gap = 12, third = (style::kPage - 2 * gap) / 3, plot_height = 130;
   DisplayList list{.width = style::kPage,
@@ -100,7 +106,9 @@ FigureResult draw_figure6(const FigureOptions& options) {
              rounded(difference, 2) + "), " + digits(p.bulk) + " in the " +
              std::to_string(p.bulk_count) + " cells away from the walls: the walls cost " +
              digits(p.bulk - p.final_density()) + ", randomness " +
-             digits(kClosestPacking - p.bulk) + " of the closest packing's 0.7405"});
+             digits(kClosestPacking - p.bulk) + " of the closest packing's 0.7405; with friction " +
+             shortest(kFrictions.back()) + " it is " +
+             digits((k == 0 ? swept.back() : packings[sweep_end + k - 1]).final_density())});
   }
 
   const auto place = [&](std::size_t k, const char* letter) {
@@ -120,7 +128,8 @@ FigureResult draw_figure6(const FigureOptions& options) {
   shaken_series.name = "";
   shaken_series.width = 0.6;
   add_plot(list, place(2, "(f)"),
-           {.x = {.label = "time [s]"}, .y = {.label = "density, shaken from 2 s"},
+           {.x = {.label = "time [s]"},
+            .y = {.label = "density, shaken from 2 s"},
             .series = {shaken_series}});
   paint_png(list, options.out / "fig6.png", 300);
   paint_pdf(list, options.out / "fig6.pdf");
@@ -143,17 +152,20 @@ FigureResult draw_figure6(const FigureOptions& options) {
       rounded(1000 * kShakeAmplitude, 2) + " mm and " + rounded(kShakeFrequency, 2) +
       " Hz along each axis: the dips are the piston, thrown up.";
   result.facts = packing_facts(packings);
-  result.facts.push_back({"frictionless to rough, by the piston",
-                          digits(swept.front().final_density()) + " to " +
-                              digits(swept.back().final_density())});
+  result.facts.push_back(
+      {"frictionless to rough, by the piston",
+       digits(swept.front().final_density()) + " to " + digits(swept.back().final_density())});
   result.facts.push_back({"shaken for " + rounded(shaking, 2) + " s",
                           digits(packings[0].final_density()) + " becomes " +
                               digits(shook.final_density()) + " by the piston, " +
                               digits(packings[0].bulk) + " becomes " + digits(shook.bulk) +
                               " away from the walls"});
   result.pictures = {"fig6.png", "fig6.pdf"};
-  result.downloads = {"fig6_density.csv", "fig6_friction.csv", "fig6_packing.csv",
-                      options.scenes / kRows[0].file, options.scenes / kRows[1].file,
+  result.downloads = {"fig6_density.csv",
+                      "fig6_friction.csv",
+                      "fig6_packing.csv",
+                      options.scenes / kRows[0].file,
+                      options.scenes / kRows[1].file,
                       options.scenes / kRows[2].file};
   return result;
 }

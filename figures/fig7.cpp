@@ -7,6 +7,7 @@
 #include <lagrain/style.hpp>
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,8 @@ struct Row {
   const char* numbers;  // n1, r1; n2, r2
   double paper;         // density
 };
-constexpr std::array<Row, 2> kRows{
-    {{"packing_207_227.toml", "207, 0.08; 227, 0.04", 0.57},
-     {"packing_1484_1747.toml", "1484, 0.04; 1747, 0.02", 0.59}}};
+constexpr std::array<Row, 2> kRows{{{"packing_207_227.toml", "207, 0.08; 227, 0.04", 0.57},
+                                    {"packing_1484_1747.toml", "1484, 0.04; 1747, 0.02", 0.59}}};
 
 std::string digits(double value) {
   return rounded(value, 3);
@@ -38,8 +38,10 @@ FigureResult draw_figure7(const FigureOptions& options) {
                                shortest(std::get<double>(scene.fills[1].radius));
     jobs.push_back({"$r$ = " + radius, scene});
     jobs.push_back({"$r$ = " + radius, shaken(scene, shaking)});
+    jobs.push_back({"$r$ = " + radius + ", frictionless", with_friction(scene, 0)});
   }
-  const std::vector<Packing> packings = run_packings(jobs, options, options.out / "fig7_density.csv");
+  const std::vector<Packing> packings =
+      run_packings(jobs, options, options.out / "fig7_density.csv");
 
   const double gap = 16, half = (style::kPage - gap) / 2, picture = 0.86 * half;
   const double plot_height = 140;
@@ -49,13 +51,13 @@ FigureResult draw_figure7(const FigureOptions& options) {
   const double top = list.height - 6 - picture;
   FigureResult result;
   for (std::size_t k = 0; k < kRows.size(); ++k) {
-    const Packing &still = packings[2 * k], &shook = packings[2 * k + 1];
+    const Packing &still = packings[3 * k], &shook = packings[3 * k + 1];
     const double x = static_cast<double>(k) * (half + gap);
     const Eigen::Index large = (still.radius.array() > still.radius.mean()).count();
-    add_packing(list, {x + 0.07 * half, top}, picture, still, ColourBy::radius, options.quick,
-                {"$n$ = " + std::to_string(large) + " + " +
-                 std::to_string(still.radius.size() - large) + ", " + still.name +
-                 " m: $d$ = " + digits(still.final_density())});
+    add_packing(
+        list, {x + 0.07 * half, top}, picture, still, ColourBy::radius, options.quick,
+        {"$n$ = " + std::to_string(large) + " + " + std::to_string(still.radius.size() - large) +
+         ", " + still.name + " m: $d$ = " + digits(still.final_density())});
     list.add(Label{.text = std::string("(") + "ab"[k] + ")",
                    .at = {x, list.height - 4},
                    .size = style::kTitle,
@@ -69,9 +71,11 @@ FigureResult draw_figure7(const FigureOptions& options) {
              rounded(difference, 2) + "), " + digits(still.bulk) + " in the " +
              std::to_string(still.bulk_count) + " cells away from the walls; shaken for " +
              rounded(shaking, 2) + " s: " + digits(shook.final_density()) + " and " +
-             digits(shook.bulk)});
+             digits(shook.bulk) +
+             "; without friction: " + digits(packings[3 * k + 2].final_density()) + " and " +
+             digits(packings[3 * k + 2].bulk)});
   }
-  const Packing &coarse = packings[0], &fine = packings[2];
+  const Packing &coarse = packings[0], &fine = packings[3];
   const bool by_piston = fine.final_density() > coarse.final_density();
   result.comparisons.push_back(
       {"densities are higher with smaller grains", "as expected",
@@ -80,9 +84,9 @@ FigureResult draw_figure7(const FigureOptions& options) {
            "); away from the walls " + digits(coarse.bulk) + " and " + digits(fine.bulk) +
            ": the gain is that of a box wider in grains, and of another mixture (small grains "
            "are " +
-           rounded(100 * 227 * std::pow(0.04, 3) /
-                       (227 * std::pow(0.04, 3) + 207 * std::pow(0.08, 3)),
-                   2) +
+           rounded(
+               100 * 227 * std::pow(0.04, 3) / (227 * std::pow(0.04, 3) + 207 * std::pow(0.08, 3)),
+               2) +
            " % and " +
            rounded(100 * 1747 * std::pow(0.02, 3) /
                        (1747 * std::pow(0.02, 3) + 1484 * std::pow(0.04, 3)),
@@ -101,8 +105,8 @@ FigureResult draw_figure7(const FigureOptions& options) {
                     .y = {.label = "density, shaken from 2 s"},
                     .legend = Corner::bottom_right};
   for (std::size_t k = 0; k < kRows.size(); ++k) {
-    pressing.series.push_back(density_series(packings[2 * k], static_cast<int>(k), 0.5));
-    shaking_plot.series.push_back(density_series(packings[2 * k + 1], static_cast<int>(k), 1.8));
+    pressing.series.push_back(density_series(packings[3 * k], static_cast<int>(k), 0.5));
+    shaking_plot.series.push_back(density_series(packings[3 * k + 1], static_cast<int>(k), 1.8));
     shaking_plot.series.back().width = 0.6;
   }
   add_plot(list, place(0, "(c)"), pressing);

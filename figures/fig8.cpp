@@ -27,9 +27,9 @@ constexpr double kFilmStart = 0.9, kFilmEnd = 1.5, kFilmEvery = 0.005;       // 
 
 Colour tint(double radius, const Run<3>& run) {
   const double smallest = run.radii().minCoeff(), largest = run.radii().maxCoeff();
-  return radius > 0.99 * largest     ? Colour{150, 60, 50, 255}
+  return radius > 0.99 * largest    ? Colour{150, 60, 50, 255}
          : radius < 1.01 * smallest ? Colour{222, 203, 150, 255}
-                                     : Colour{92, 128, 160, 255};
+                                    : Colour{92, 128, 160, 255};
 }
 
 Scene3 seen_from_below(const Run<3>& run, const Columns<3>& x, int subframes) {
@@ -126,9 +126,9 @@ FigureResult draw_figure8(const FigureOptions& options) {
        std::to_string(under(kept.front())) + " at 1.00 s, " + std::to_string(under(kept.back())) +
            " at 1.25 s"}};
   for (auto& [name, value] : facts(*run)) result.facts.push_back({name, value});
-  result.facts.push_back({"height of the large grain above the floor, at the end",
-                          rounded(1000 * (run->positions()(2, large) - run->radii()[large]), 2) +
-                              " mm"});
+  result.facts.push_back(
+      {"height of the large grain above the floor, at the end",
+       rounded(1000 * (run->positions()(2, large) - run->radii()[large]), 2) + " mm"});
   result.pictures = {"fig8.png", "fig8.pdf", film.path};
   result.downloads = {"fig8_large_grain.csv", "fig8_final.csv", file};
   return result;

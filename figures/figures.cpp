@@ -12,6 +12,10 @@ FigureResult draw_figure2(const FigureOptions& options);
 FigureResult draw_figure3(const FigureOptions& options);
 FigureResult draw_figure4(const FigureOptions& options);
 FigureResult draw_figure5(const FigureOptions& options);
+FigureResult draw_figure6(const FigureOptions& options);
+FigureResult draw_figure7(const FigureOptions& options);
+FigureResult draw_figure8(const FigureOptions& options);
+FigureResult draw_figure9(const FigureOptions& options);
 }  // namespace figures
 #endif
 
@@ -23,6 +27,10 @@ const std::vector<Figure>& all_figures() {
       {3, "Overlapping discs: where the detection works and where it stops", figures::draw_figure3},
       {4, "Moving discs: the triangulation before, stale, and maintained", figures::draw_figure4},
       {5, "Rock fall on an embankment, and its force chains", figures::draw_figure5},
+      {6, "Packings of equal spheres under a piston", figures::draw_figure6},
+      {7, "Packings of spheres of two radii", figures::draw_figure7},
+      {8, "Grains leave space for a large one", figures::draw_figure8},
+      {9, "Random packings and the closest one", figures::draw_figure9},
 #endif
   };
   return all;

@@ -134,8 +134,7 @@ Scene<3> with_friction(Scene<3> scene, double friction) {
   return scene;
 }
 
-std::vector<Packing> run_packings(const std::vector<PackingJob>& jobs,
-                                  const FigureOptions& options,
+std::vector<Packing> run_packings(const std::vector<PackingJob>& jobs, const FigureOptions& options,
                                   const std::filesystem::path& csv) {
   static std::map<std::string, Packing> kept;  // by the scene that was run
   std::vector<std::string> keys;
@@ -232,15 +231,17 @@ Series density_series(const Packing& packing, int index, double from) {
 void add_packing(DisplayList& list, const Vec<2>& low, double width, const Packing& packing,
                  ColourBy by, bool quick, const std::vector<std::string>& text) {
   Scene3 scene;
-  const Box3 whole{packing.box.min(), {packing.box.max().x(), packing.box.max().y(),
-                                       std::max(1.0, packing.box.max().z())}};
+  const Box3 whole{
+      packing.box.min(),
+      {packing.box.max().x(), packing.box.max().y(), std::max(1.0, packing.box.max().z())}};
   const double smallest = packing.radius.minCoeff();
   for (Eigen::Index i = 0; i < packing.radius.size(); ++i) {
     const Vec<3> x = packing.position.col(i);
     const Colour tint = by == ColourBy::height
                             ? colour(ColourMap::viridis, (x.z() - whole.low.z()) / whole.size().z())
-                        : packing.radius[i] > 1.01 * smallest ? mix(category(0), style::kPaper, 0.2)
-                                                              : mix(category(1), style::kPaper, 0.2);
+                        : packing.radius[i] > 1.01 * smallest
+                            ? mix(category(0), style::kPaper, 0.2)
+                            : mix(category(1), style::kPaper, 0.2);
     scene.balls.push_back({x, packing.radius[i], tint});
   }
   add_edges(scene, whole);
@@ -284,24 +285,22 @@ std::vector<Fact> packing_facts(const std::vector<Packing>& packings) {
     cost.moved += p.cost.moved;
     cost.searched += p.cost.searched;
   }
-  return {
-      {"runs", std::to_string(packings.size()) + ", " + std::to_string(steps) + " steps"},
-      {"time",
-       rounded(seconds) + " s of one core, " +
-           rounded(1e9 * seconds / static_cast<double>(grain_steps)) +
-           " ns per grain and step, audit included; " + rounded(100 * share / seconds, 2) +
-           " % of it for the neighbourhood"},
-      {"contacts audited", std::to_string(audited)},
-      {"contacts missed", std::to_string(missed)},
-      {"largest overlap at any sample", rounded(100 * overlap, 2) + " % of the smaller radius"},
-      {"largest energy residual", rounded(100 * residual, 2) + " % of what was dissipated"},
-      {"triangulation updates", std::to_string(cost.updates) + ", " + std::to_string(cost.moved) +
-                                    " grains moved, " + std::to_string(cost.ladder.flips) +
-                                    " flips"},
-      {"repairs", std::to_string(cost.ladder.extracted) + " grains taken out, " +
-                      std::to_string(cost.ladder.unstuck) + " cavities filled anew, " +
-                      std::to_string(cost.ladder.rebuilds) + " rebuilds, " +
-                      std::to_string(cost.searched) + " range searches"}};
+  return {{"runs", std::to_string(packings.size()) + ", " + std::to_string(steps) + " steps"},
+          {"time", rounded(seconds) + " s of one core, " +
+                       rounded(1e9 * seconds / static_cast<double>(grain_steps)) +
+                       " ns per grain and step, audit included; " +
+                       rounded(100 * share / seconds, 2) + " % of it for the neighbourhood"},
+          {"contacts audited", std::to_string(audited)},
+          {"contacts missed", std::to_string(missed)},
+          {"largest overlap at any sample", rounded(100 * overlap, 2) + " % of the smaller radius"},
+          {"largest energy residual", rounded(100 * residual, 2) + " % of what was dissipated"},
+          {"triangulation updates", std::to_string(cost.updates) + ", " +
+                                        std::to_string(cost.moved) + " grains moved, " +
+                                        std::to_string(cost.ladder.flips) + " flips"},
+          {"repairs", std::to_string(cost.ladder.extracted) + " grains taken out, " +
+                          std::to_string(cost.ladder.unstuck) + " cavities filled anew, " +
+                          std::to_string(cost.ladder.rebuilds) + " rebuilds, " +
+                          std::to_string(cost.searched) + " range searches"}};
 }
 
 }  // namespace lagrain::figures

@@ -45,7 +45,7 @@ struct Packing {
   double bulk = 0;              ///< density of the Laguerre cells away from all walls [-]
   int bulk_count = 0;           ///< cells in that
   double edges_per_site = 0;
-  double seconds = 0;  ///< wall clock
+  double seconds = 0;                      ///< wall clock
   std::vector<ContactRecord<3>> contacts;  ///< at the end
   ContactStatistics statistics;            ///< at the end
   double largest_overlap = 0;              ///< at any sample, of the smaller radius [-]

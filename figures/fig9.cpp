@@ -1,0 +1,296 @@
+// Figure 9 (not in the paper): how far random packings stay from the closest one.
+//
+// (a) The closest packing of equal spheres, face-centred cubic, run through the engine under its
+// own weight. (b) The densities of figures 6 and 7 on one axis with it. (c) The third claim of the
+// paper, measured: edges of the triangulation per site, linear in all scenes, and a family of sites
+// where they are quadratic.
+
+#include "packing.hpp"
+#include "scene_run.hpp"
+
+#include <lagrain/output.hpp>
+#include <lagrain/paint.hpp>
+#include <lagrain/style.hpp>
+#include <lagrain/triangulation3.hpp>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace lagrain::figures {
+
+namespace {
+
+constexpr double kRadius = 0.04;         // of the spheres of the closest packing [m]
+constexpr double kRandomClose = 0.6366;  // Scott & Kilgour, J. Phys. D 2 (1969) 863
+
+/// Square layers, each in the hollows of the one below: the (100) planes of face-centred cubic.
+/// Stiff, so that the weight of the layers above does not show in the first four digits.
+Scene<3> closest_packing(int across, int layers) {
+  Scene<3> scene;
+  scene.title = "Face-centred cubic packing under its own weight";
+  scene.duration = 0.1;
+  scene.time_step.fraction_of_contact = 1.0 / 20;
+  scene.gravity = {0, 0, -9.81};
+  scene.friction = FrictionModel::none;
+  scene.law.stiffness = 4e8;
+  scene.law.restitution = 0.5;
+  scene.materials = {{"stone", 2500}};
+  scene.audit = true;
+  for (int k = 0; k < layers; ++k) {
+    const int count = across - k % 2;
+    for (int i = 0; i < count; ++i) {
+      for (int j = 0; j < count; ++j) {
+        PlacedGrain<3> grain;
+        grain.radius = kRadius;
+        grain.position =
+            kRadius * Vec<3>(1 + 2 * i + k % 2, 1 + 2 * j + k % 2, 1 + std::numbers::sqrt2 * k);
+        scene.grains.push_back(grain);
+      }
+    }
+  }
+  const Vec<3> far = Vec<3>::Constant(2 * kRadius * across);
+  const Vec<3> zero = Vec<3>::Zero();
+  scene.walls = {
+      Wall<3>::half_space("bottom", zero, {0, 0, 1}), Wall<3>::half_space("left", zero, {1, 0, 0}),
+      Wall<3>::half_space("front", zero, {0, 1, 0}), Wall<3>::half_space("right", far, {-1, 0, 0}),
+      Wall<3>::half_space("back", far, {0, -1, 0})};
+  return scene;
+}
+
+struct Closest {
+  Packing packing;
+  double start = 0;          ///< density within, before it carries itself
+  double largest_move = 0;   ///< of a grain, of its radius [-]
+  double kinetic_share = 0;  ///< kinetic energy at the end, of the weight times a radius [-]
+};
+
+Closest run_closest(const FigureOptions& options) {
+  const int across = options.quick ? 7 : 9, layers = options.quick ? 8 : 12;
+  const std::unique_ptr<Run<3>> run = make_scene_run(closest_packing(across, layers));
+  const Columns<3> before = run->positions();
+  Closest result;
+  Eigen::AlignedBox3d box(Vec<3>::Zero(), Vec<3>::Constant(2 * kRadius * across));
+  box.max().z() = kRadius * (2 + std::numbers::sqrt2 * (layers - 1));
+  result.start = bulk_density(before, run->radii(), box).first;
+  while (!run->finished()) {
+    run->step();
+    if (options.stop()) throw Interrupted();
+    if (run->steps() % 100 == 0) {
+      options.progress(run->time() / run->scene().duration, "closest packing");
+    }
+  }
+  Packing& p = result.packing;
+  p.name = "closest";
+  p.position = run->positions();
+  p.radius = run->radii();
+  p.box = box;
+  std::tie(p.bulk, p.bulk_count) = bulk_density(p.position, p.radius, box);
+  p.edges_per_site = static_cast<double>(run->neighbourhood().edges()) / run->count();
+  p.audited = run->audit().contacts();
+  p.missed = run->audit().missed();
+  result.largest_move = (p.position - before).colwise().norm().maxCoeff() / kRadius;
+  result.kinetic_share = run->ledger().kinetic / (run->masses().sum() * 9.81 * kRadius);
+  return result;
+}
+
+/// Half of the sites on each of two lines that cross in space: every site sees all of the other
+/// line.
+double edges_per_site_on_two_lines(int n) {
+  Columns<3> x(3, n);
+  for (int i = 0; i < n; ++i) {
+    const double t = 2.0 * (i / 2 + 0.5) / n - 0.5;
+    x.col(i) = i % 2 == 0 ? Vec<3>(t, 0, 0) : Vec<3>(0, t, 1);
+  }
+  Triangulation<3> triangulation;
+  triangulation.build(x, Eigen::VectorXd::Zero(n));
+  std::int64_t edges = 0;
+  triangulation.for_each_edge([&](int, int) { ++edges; });
+  return static_cast<double>(edges) / n;
+}
+
+struct AxisRow {
+  std::string name;
+  double piston, bulk;  // NaN: none
+  double shaken_piston, shaken_bulk;
+};
+
+/// Rows of marks over one axis of densities.
+void add_density_axis(DisplayList& list, const Box& box, const std::vector<AxisRow>& rows) {
+  constexpr double kLow = 0.5, kHigh = 0.76;
+  const double left = box.low[0] + 118, bottom = box.low[1] + 26;
+  const auto at = [&](double density) {
+    return left + (density - kLow) / (kHigh - kLow) * (box.high[0] - left);
+  };
+  const double step = (box.high[1] - 20 - bottom) / static_cast<double>(rows.size());
+  const double top = box.high[1] - 14;
+  list.add(Segment{{left, bottom}, {box.high[0], bottom}, style::kAxisLine});
+  for (const Tick& tick : nice_ticks(kLow, kHigh, 6).ticks) {
+    const double x = at(tick.value);
+    list.add(Segment{{x, bottom}, {x, bottom - 3}, style::kAxisLine});
+    list.add(Label{.text = tick.label,
+                   .at = {x, bottom - 5},
+                   .size = style::kSmallText,
+                   .across = Across::centre,
+                   .along = Along::top});
+  }
+  list.add(Label{.text = "density",
+                 .at = {(left + box.high[0]) / 2, box.low[1] + 8},
+                 .size = style::kText,
+                 .across = Across::centre,
+                 .along = Along::top});
+  const auto add_bound = [&](double density, const std::string& name) {
+    list.add(Segment{{at(density), bottom}, {at(density), top}, {style::kFaint, style::kMedium}});
+    list.add(Label{.text = name,
+                   .at = {at(density), top + 3},
+                   .size = style::kSmallText,
+                   .across = Across::centre});
+  };
+  add_bound(kRandomClose, "random close");
+  add_bound(kClosestPacking, "$\\pi/(3\\sqrt{2})$");
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const AxisRow& row = rows[k];
+    const double y = top - 6 - (static_cast<double>(k) + 0.5) * step;
+    list.add(Label{.text = row.name,
+                   .at = {left - 6, y},
+                   .size = style::kText,
+                   .across = Across::right,
+                   .along = Along::middle});
+    list.add(
+        Segment{{left, y}, {box.high[0], y}, {with_alpha(style::kFaint, 0.4), style::kHairline}});
+    const auto mark = [&](double density, Colour colour, bool filled) {
+      if (!(density >= kLow && density <= kHigh)) return;
+      list.add(Disc{{at(density), y}, 3, filled ? colour : style::kPaper, {colour, 1}});
+    };
+    mark(row.piston, category(0), false);
+    mark(row.bulk, category(0), true);
+    mark(row.shaken_piston, category(1), false);
+    mark(row.shaken_bulk, category(1), true);
+  }
+}
+
+/// What the four marks mean.
+void add_key(DisplayList& list, const Vec<2>& low) {
+  const std::array<std::string, 4> names{"by the piston", "away from the walls",
+                                         "shaken, by the piston", "shaken, away from the walls"};
+  double x = low[0];
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const Colour colour = category(static_cast<int>(k / 2));
+    list.add(Disc{{x, low[1]}, 3, k % 2 == 1 ? colour : style::kPaper, {colour, 1}});
+    list.add(Label{.text = names[k],
+                   .at = {x + 6, low[1]},
+                   .size = style::kSmallText,
+                   .along = Along::middle});
+    x += k % 2 == 0 ? 66 : 86;
+    if (k == 2) x += 14;
+  }
+}
+
+}  // namespace
+
+FigureResult draw_figure9(const FigureOptions& options) {
+  const std::array<std::string, 5> files{"packing_1484.toml", "packing_3498.toml",
+                                         "packing_6944.toml", "packing_207_227.toml",
+                                         "packing_1484_1747.toml"};
+  std::vector<PackingJob> jobs;
+  for (const std::string& file : files) {
+    const Scene<3> scene = packing_scene(options, file);
+    std::string name = "$r$ = " + shortest(std::get<double>(scene.fills[0].radius));
+    if (scene.fills.size() > 1) name += ", " + shortest(std::get<double>(scene.fills[1].radius));
+    jobs.push_back({name, scene});
+  }
+  // Figures 6 and 7 have run these already when all figures are drawn.
+  for (const std::size_t k : {0, 3, 4}) {
+    const double seconds = options.quick ? 1 : k == 0 ? 4 : 2;
+    jobs.push_back({"shaken", shaken(jobs[k].scene, seconds)});
+  }
+  const std::vector<Packing> packings =
+      run_packings(jobs, options, options.out / "fig9_density.csv");
+  const Closest closest = run_closest(options);
+
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  std::vector<AxisRow> rows;
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    const Packing* shook = k == 0   ? &packings[5]
+                           : k == 3 ? &packings[6]
+                           : k == 4 ? &packings[7]
+                                    : nullptr;
+    rows.push_back({packings[k].name + " m", packings[k].final_density(), packings[k].bulk,
+                    shook ? shook->final_density() : kNone, shook ? shook->bulk : kNone});
+  }
+  rows.push_back({"closest packing, run", kNone, closest.packing.bulk, kNone, kNone});
+
+  Series scenes = series_style(0), lines = series_style(1);
+  scenes.name = "packings";
+  scenes.marker = Marker::disc;
+  scenes.width = 0;
+  lines.name = "two crossing lines";
+  lines.marker = Marker::square;
+  std::string table = "sites,edges_per_site[-],what\n";
+  const auto note = [&](Series& series, double n, double edges, const std::string& what) {
+    series.x.push_back(n);
+    series.y.push_back(edges);
+    table += shortest(n) + "," + shortest(edges) + ",\"" + what + "\"\n";
+  };
+  for (const Packing& p : packings) {
+    note(scenes, static_cast<double>(p.radius.size()), p.edges_per_site, p.name);
+  }
+  note(scenes, static_cast<double>(closest.packing.radius.size()), closest.packing.edges_per_site,
+       "closest packing");
+  for (int n = 50; n <= (options.quick ? 400 : 1600); n *= 2) {
+    note(lines, n, edges_per_site_on_two_lines(n), "two crossing lines");
+  }
+  write_file(options.out / "fig9_edges.csv", table);
+
+  const double gap = 20, picture = 150, row_height = 176;
+  DisplayList list{.width = style::kPage, .height = 350, .title = "lagrain, figure 9"};
+  const auto letter = [&](double x, double y, const char* text) {
+    list.add(Label{.text = text, .at = {x, y}, .size = style::kTitle, .along = Along::top});
+  };
+  letter(0, list.height - 2, "(a)");
+  add_packing(list, {16, list.height - 12 - picture}, picture, closest.packing, ColourBy::height,
+              options.quick, {"face-centred cubic, at rest: " + rounded(closest.packing.bulk, 4)});
+  const double x = picture + 32 + gap;
+  letter(x, list.height - 2, "(c)");
+  add_plot(list, {{x + 14, list.height - 12 - picture - 10}, {style::kPage, list.height - 8}},
+           {.x = {.label = "sites", .log = true},
+            .y = {.label = "edges per site", .log = true},
+            .series = {scenes, lines},
+            .legend = Corner::top_left});
+  letter(0, row_height - 4, "(b)");
+  add_density_axis(list, {{16, 14}, {style::kPage - 6, row_height - 6}}, rows);
+  add_key(list, {120, 5});
+  paint_png(list, options.out / "fig9.png", 300);
+  paint_pdf(list, options.out / "fig9.pdf");
+
+  FigureResult result;
+  result.caption =
+      "(a) The closest packing of equal spheres, " + std::to_string(closest.packing.radius.size()) +
+      " of them in square layers, after " + rounded(0.1, 2) +
+      " s under its own weight. (b) Densities of the packings of figures 6 and 7; random close "
+      "packing after Scott & Kilgour, J. Phys. D 2 (1969) 863. (c) Edges of the triangulation per "
+      "site.";
+  result.comparisons = {
+      {"closest packing of equal spheres", "0.74048 (Hales)",
+       rounded(closest.packing.bulk, 5) + " within, run through the engine (" +
+           rounded(closest.start, 5) + " before it carried itself)"},
+      {"edges per site (third claim: linear in practice, quadratic at worst)", "O(n), O(n^2)",
+       rounded(*std::min_element(scenes.y.begin(), scenes.y.end()), 3) + " to " +
+           rounded(*std::max_element(scenes.y.begin(), scenes.y.end()), 3) +
+           " in all packings; n/4 + 1 on two crossing lines (" + rounded(lines.y.back(), 4) +
+           " for " + rounded(lines.x.back(), 5) + ")"}};
+  result.facts = packing_facts(packings);
+  result.facts.push_back({"closest packing: largest move of a grain",
+                          rounded(100 * closest.largest_move, 2) + " % of its radius"});
+  result.facts.push_back({"closest packing: kinetic energy at the end",
+                          rounded(closest.kinetic_share, 2) + " of weight times radius"});
+  result.facts.push_back(
+      {"closest packing: contacts audited, missed",
+       std::to_string(closest.packing.audited) + ", " + std::to_string(closest.packing.missed)});
+  result.pictures = {"fig9.png", "fig9.pdf"};
+  result.downloads = {"fig9_density.csv", "fig9_edges.csv"};
+  return result;
+}
+
+}  // namespace lagrain::figures
