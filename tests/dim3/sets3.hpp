@@ -7,6 +7,8 @@
 
 #include "support/site_sets.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -6,7 +6,6 @@
 #include "support/cases.hpp"
 
 #include <doctest/doctest.h>
-#include <Eigen/Geometry>
 
 #include <cmath>
 #include <limits>

@@ -1,0 +1,339 @@
+/// Triangulation<3> and its predicates against CGAL. CGAL breaks ties by coordinates and we by ids:
+/// where there are none the edges and tetrahedra are the same, where there are, each of our
+/// tetrahedra passes CGAL's power test and each edge that no choice can avoid is there.
+
+#include <lagrain/triangulation3.hpp>
+
+#include "dim3/sets3.hpp"
+#include "support/cases.hpp"
+
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Regular_triangulation_3.h>
+#include <CGAL/Triangulation_vertex_base_with_info_3.h>
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+using namespace lagrain;
+using test::Edge;
+using test::Four;
+
+namespace {
+
+template <class Kernel>
+using OracleOf = CGAL::Regular_triangulation_3<
+    Kernel, CGAL::Triangulation_data_structure_3<
+                CGAL::Triangulation_vertex_base_with_info_3<
+                    int, Kernel, CGAL::Regular_triangulation_vertex_base_3<Kernel>>,
+                CGAL::Regular_triangulation_cell_base_3<Kernel>>>;
+
+using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
+using Oracle = OracleOf<Kernel>;
+// Its predicates are exact too; for large sets.
+using FastKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using FastOracle = OracleOf<FastKernel>;
+
+template <class Kernel>
+typename Kernel::Weighted_point_3 weighted(const test3::Sites& s, int i) {
+  return {typename Kernel::Point_3(s.x(0, i), s.x(1, i), s.x(2, i)), s.w[i]};
+}
+
+Edge sorted(int i, int j) {
+  return {std::min(i, j), std::max(i, j)};
+}
+
+/// What CGAL says, one site at a time.
+struct Answer {
+  int dimension = -1;
+  std::vector<Edge> edges;       // all, sorted
+  std::vector<Edge> certain;     // those that are there however ties are decided
+  std::vector<Four> tetrahedra;  // sorted
+  std::vector<int> visible;      // sorted
+  bool ties = false;
+};
+
+template <class Oracle>
+Answer read(const Oracle& oracle) {
+  Answer answer;
+  answer.dimension = oracle.dimension();
+  for (auto v = oracle.finite_vertices_begin(); v != oracle.finite_vertices_end(); ++v) {
+    answer.visible.push_back(v->info());
+  }
+  std::sort(answer.visible.begin(), answer.visible.end());
+  for (auto e = oracle.finite_edges_begin(); e != oracle.finite_edges_end(); ++e) {
+    answer.edges.push_back(
+        sorted(e->first->vertex(e->second)->info(), e->first->vertex(e->third)->info()));
+  }
+  std::sort(answer.edges.begin(), answer.edges.end());
+  if (oracle.dimension() < 3) return answer;
+  for (auto c = oracle.finite_cells_begin(); c != oracle.finite_cells_end(); ++c) {
+    Four four;
+    for (int k = 0; k < 4; ++k) four[static_cast<std::size_t>(k)] = c->vertex(k)->info();
+    std::sort(four.begin(), four.end());
+    answer.tetrahedra.push_back(four);
+  }
+  std::sort(answer.tetrahedra.begin(), answer.tetrahedra.end());
+  return answer;
+}
+
+/// Ties of a set that spans space. An edge is certain if its dual is a polygon with area: it runs
+/// through more than two different power centres, or is on the hull but not inside a flat part.
+void find_ties(const Oracle& oracle, Answer& answer) {
+  const auto power_side = Kernel().power_side_of_oriented_power_sphere_3_object();
+  const auto coplanar = Kernel().orientation_3_object();
+  // Two cells with one power centre, or two coplanar hull facets.
+  const auto tie = [&](Oracle::Cell_handle c, int i) {
+    const auto d = c->neighbor(i);
+    const bool c_out = oracle.is_infinite(c), d_out = oracle.is_infinite(d);
+    const auto opposite = d->vertex(d->index(c));
+    if (!c_out && !d_out) {
+      return power_side(c->vertex(0)->point(), c->vertex(1)->point(), c->vertex(2)->point(),
+                        c->vertex(3)->point(), opposite->point()) == CGAL::ON_ORIENTED_BOUNDARY;
+    }
+    if (c_out && d_out) {
+      std::array<Kernel::Point_3, 4> p;
+      for (int k = 0, l = 0; k < 4; ++k) {
+        if (!oracle.is_infinite(c->vertex(k))) {
+          p[static_cast<std::size_t>(l++)] = c->vertex(k)->point().point();
+        }
+      }
+      return coplanar(p[0], p[1], p[2], opposite->point().point()) == CGAL::COPLANAR;
+    }
+    return false;
+  };
+  for (auto e = oracle.finite_edges_begin(); e != oracle.finite_edges_end(); ++e) {
+    auto c = oracle.incident_cells(*e);
+    const auto first = c;
+    int changes = 0;
+    do {
+      const Oracle::Cell_handle now = c;
+      ++c;
+      const bool tied = tie(now, now->index(Oracle::Cell_handle(c)));
+      answer.ties = answer.ties || tied;
+      changes += !tied;
+    } while (c != first);
+    if (changes > 2) {
+      answer.certain.push_back(
+          sorted(e->first->vertex(e->second)->info(), e->first->vertex(e->third)->info()));
+    }
+  }
+  std::sort(answer.certain.begin(), answer.certain.end());
+}
+
+Answer ask(const test3::Sites& s, const std::vector<int>& ids) {
+  Oracle oracle;
+  for (const int i : ids) {
+    const auto v = oracle.insert(weighted<Kernel>(s, i));
+    if (v != Oracle::Vertex_handle()) v->info() = i;
+  }
+  REQUIRE(oracle.is_valid());
+  Answer answer = read(oracle);
+  if (answer.dimension == 3) find_ties(oracle, answer);
+  return answer;
+}
+
+/// A large set, inserted in an order that is good for it.
+Answer ask_fast(const test3::Sites& s) {
+  std::vector<std::pair<FastKernel::Weighted_point_3, int>> points;
+  for (int i = 0; i < s.size(); ++i) points.emplace_back(weighted<FastKernel>(s, i), i);
+  FastOracle oracle;
+  oracle.insert(points.begin(), points.end());
+  return read(oracle);
+}
+
+/// No site is strictly in conflict with any tetrahedron, by CGAL's own test.
+bool power_valid(const Triangulation<3>& t, const test3::Sites& s, const std::vector<int>& ids) {
+  bool valid = true;
+  const auto test = FastKernel().power_side_of_oriented_power_sphere_3_object();
+  const auto point = [&](int i) { return weighted<FastKernel>(s, i); };
+  t.for_each_tetrahedron([&](int a, int b, int c, int d) {
+    const auto pa = point(a), pb = point(b), pc = point(c), pd = point(d);
+    for (const int e : ids) {
+      if (e == a || e == b || e == c || e == d) continue;
+      valid = valid && test(pa, pb, pc, pd, point(e)) != CGAL::ON_POSITIVE_SIDE;
+    }
+  });
+  return valid;
+}
+
+void check_against_cgal(const Triangulation<3>& t, const test3::Sites& s,
+                        const std::vector<int>& ids, bool general) {
+  const Answer answer = ask(s, ids);
+  const auto ours = test::edges(t);
+  CHECK(test::audited(t) == "");
+  CHECK(power_valid(t, s, ids));
+  CHECK(t.dimension() == answer.dimension);
+  CHECK(std::includes(ours.begin(), ours.end(), answer.certain.begin(), answer.certain.end()));
+  if (general) {
+    CHECK(!answer.ties);
+    CHECK(ours == answer.edges);
+    CHECK(test::tetrahedra(t) == answer.tetrahedra);
+    CHECK(test::visible(t) == answer.visible);
+  }
+}
+
+/// In general position, with hidden sites and without.
+std::vector<test3::Sites> general_kinds(Random& random) {
+  return {test3::jittered(random, 4),
+          test3::uniform(random, 60),
+          test3::overlapping(random, 60),
+          test3::polydisperse(random, 60, 100),
+          test3::size_ratio(random, 60),
+          test3::nearly_coplanar(random, 30),
+          test::far_away(test3::overlapping(random, 40))};
+}
+
+std::vector<test3::Sites> tied_kinds(Random& random) {
+  auto kinds = test3::tied_kinds(random, 3);
+  for (auto& s : test3::flat_kinds(random, 25)) kinds.push_back(std::move(s));
+  return kinds;
+}
+
+CGAL::Sign as_sign(int value) {
+  return static_cast<CGAL::Sign>(value);
+}
+
+}  // namespace
+
+TEST_SUITE("triangulation3 against CGAL") {
+  TEST_CASE("orientation and power test have CGAL's signs") {
+    const FastKernel kernel;
+    const auto orientation_of = kernel.orientation_3_object();
+    const auto power_side_of = kernel.power_side_of_oriented_power_sphere_3_object();
+    for (int seed = 0; seed < test::cases(20, 1000); ++seed) {
+      Random random(static_cast<std::uint64_t>(seed));
+      for (const auto& s : test3::all_kinds(random)) {
+        CAPTURE(seed);
+        CAPTURE(s.name);
+        for (int trial = 0; trial < 50; ++trial) {
+          std::array<Site3, 5> p;
+          std::array<FastKernel::Weighted_point_3, 5> q;
+          for (std::size_t k = 0; k < 5; ++k) {
+            const int i = random.below(s.size());
+            p[k] = {s.x(0, i), s.x(1, i), s.x(2, i), s.w[i]};
+            q[k] = weighted<FastKernel>(s, i);
+          }
+
+          const int side = orientation(p[0], p[1], p[2], p[3]);
+
+          REQUIRE(as_sign(side) ==
+                  orientation_of(q[0].point(), q[1].point(), q[2].point(), q[3].point()));
+          if (side == 0) continue;
+          if (side < 0) {
+            std::swap(p[0], p[1]);
+            std::swap(q[0], q[1]);
+          }
+          REQUIRE(as_sign(power_side(p[0], p[1], p[2], p[3], p[4])) ==
+                  power_side_of(q[0], q[1], q[2], q[3], q[4]));
+        }
+      }
+    }
+  }
+
+  TEST_CASE("build, moves of one, few and all sites, and weight changes agree") {
+    for (int seed = 0; seed < test::cases(5, 100); ++seed) {
+      Random random(static_cast<std::uint64_t>(seed));
+      for (const bool general : {true, false}) {
+        for (test3::Sites s : general ? general_kinds(random) : tied_kinds(random)) {
+          CAPTURE(seed);
+          CAPTURE(s.name);
+          const auto ids = test::all_ids(s.size());
+          auto t = test::built(s);
+          check_against_cgal(t, s, ids, general);
+          for (const double distance : {0.01, 0.05, 0.17, 1.0}) {
+            for (const double fraction : {0.0, 0.1, 1.0}) {
+              CAPTURE(distance);
+              CAPTURE(fraction);
+              auto moved = test::some_ids(random, s.size(), fraction);
+              if (moved.empty()) moved = {random.below(s.size())};
+              for (const int i : moved) {
+                // Multiples of 1/8 keep ties in the tied sets.
+                const Vec<3> step = general
+                                        ? Vec<3>(s.r * distance * test::random_direction<3>(random))
+                                        : Vec<3>(0.125 * random.below(3) * Vec<3>(1, 1, -1));
+                s.x.col(i) += step;
+                if (random.uniform() < 0.3) s.w[i] *= general ? random.uniform(0.5, 1.5) : 0.5;
+              }
+              t.move(moved, s.x, s.w);
+              check_against_cgal(t, s, ids, general);
+            }
+          }
+        }
+      }
+    }
+  }
+
+  TEST_CASE("insertions and removals in any order agree") {
+    for (int seed = 0; seed < test::cases(5, 200); ++seed) {
+      Random random(static_cast<std::uint64_t>(seed));
+      for (const bool general : {true, false}) {
+        for (const auto& s : general ? general_kinds(random) : tied_kinds(random)) {
+          CAPTURE(seed);
+          CAPTURE(s.name);
+          Triangulation<3> t;
+          for (int i = 0; i < s.size(); ++i) t.insert(i, s.x.col(i), s.w[i]);
+          check_against_cgal(t, s, test::all_ids(s.size()), general);
+
+          std::vector<int> left;
+          for (int i = 0; i < s.size(); ++i) {
+            if (random.uniform() < 0.4) {
+              t.remove(i);
+            } else {
+              left.push_back(i);
+            }
+          }
+
+          check_against_cgal(t, s, left, general);
+        }
+      }
+    }
+  }
+}
+
+TEST_SUITE("triangulation3 against CGAL: a large set") {
+  TEST_CASE("moves of all sites and of single ones agree, and the report says what they took") {
+    const int count = test::cases(10000, 100000);
+    for (const bool loose : {false, true}) {
+      Random random(17);
+      auto s = loose ? test3::uniform(random, count)
+                     : test3::jittered(random, static_cast<int>(std::cbrt(count)));
+      CAPTURE(s.name);
+      auto t = test::built(s);
+      for (const double distance : {0.01, 0.05, 0.17, 1.0}) {
+        CAPTURE(distance);
+        const auto agree = [&](const UpdateReport& report, const std::string& what) {
+          const Answer answer = ask_fast(s);
+          // Both are long: compared in the check they would be printed.
+          const bool edges_agree = test::edges(t) == answer.edges;
+          const bool tetrahedra_agree = test::tetrahedra(t) == answer.tetrahedra;
+          CHECK(edges_agree);
+          CHECK(tetrahedra_agree);
+          CHECK(test::visible(t).size() == answer.visible.size());
+          if (distance <= 0.05) CHECK(report.rebuilds == 0);
+          MESSAGE(s.name << ", " << s.size() << " sites, " << what << " by " << distance
+                         << " r: flips " << report.flips << ", extracted " << report.extracted
+                         << ", unstuck " << report.unstuck << ", reinserted " << report.reinserted
+                         << ", rebuilds " << report.rebuilds);
+        };
+
+        const auto all = test::all_ids(s.size());
+        s = test::displaced(s, all, distance * s.r, random);
+        agree(t.move(all, s.x, s.w), "all");
+
+        UpdateReport total;
+        for (int k = 0; k < 300; ++k) {
+          const std::vector<int> one{random.below(s.size())};
+          s = test::displaced(s, one, distance * s.r, random);
+          total += t.move(one, s.x, s.w);
+        }
+        agree(total, "300 one by one");
+      }
+    }
+  }
+}
