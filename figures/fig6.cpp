@@ -59,7 +59,8 @@ Plot friction_plot(const std::vector<double>& friction, const std::vector<Packin
 FigureResult draw_figure6(const FigureOptions& options) {
   std::vector<PackingJob> jobs;
   for (const Row& row : kRows) {
-    jobs.push_back({"$r$ = " + std::string(row.radius), packing_scene(options, row.file)});
+    const Scene<3> scene = packing_scene(options, row.file);
+    jobs.push_back({"$r$ = " + shortest(std::get<double>(scene.fills[0].radius)), scene});
   }
   const Scene<3> base = jobs[0].scene;
   const double shaking = options.quick ? 1 : 4;  // [s]
@@ -103,8 +104,7 @@ FigureResult draw_figure6(const FigureOptions& options) {
              (options.quick ? " (quick: an eighth as many, twice as large)" : ""),
          shortest(kRows[k].paper),
          digits(p.final_density()) + " by the piston (" + (difference < 0 ? "" : "+") +
-             rounded(difference, 2) + "), " + digits(p.bulk) + " in the " +
-             std::to_string(p.bulk_count) + " cells away from the walls: the walls cost " +
+             rounded(difference, 2) + "), " + bulk_text(p) + ": the walls cost " +
              digits(p.bulk - p.final_density()) + ", randomness " +
              digits(kClosestPacking - p.bulk) + " of the closest packing's 0.7405; with friction " +
              shortest(kFrictions.back()) + " it is " +

@@ -51,7 +51,8 @@ FigureResult draw_figure7(const FigureOptions& options) {
   const double top = list.height - 6 - picture;
   FigureResult result;
   for (std::size_t k = 0; k < kRows.size(); ++k) {
-    const Packing &still = packings[3 * k], &shook = packings[3 * k + 1];
+    const Packing &still = packings[3 * k], &shook = packings[3 * k + 1],
+                  &smooth = packings[3 * k + 2];
     const double x = static_cast<double>(k) * (half + gap);
     const Eigen::Index large = (still.radius.array() > still.radius.mean()).count();
     add_packing(
@@ -68,20 +69,18 @@ FigureResult draw_figure7(const FigureOptions& options) {
              (options.quick ? " (quick: an eighth as many, twice as large)" : ""),
          shortest(kRows[k].paper),
          digits(still.final_density()) + " by the piston (" + (difference < 0 ? "" : "+") +
-             rounded(difference, 2) + "), " + digits(still.bulk) + " in the " +
-             std::to_string(still.bulk_count) + " cells away from the walls; shaken for " +
-             rounded(shaking, 2) + " s: " + digits(shook.final_density()) + " and " +
-             digits(shook.bulk) +
-             "; without friction: " + digits(packings[3 * k + 2].final_density()) + " and " +
-             digits(packings[3 * k + 2].bulk)});
+             rounded(difference, 2) + "), " + bulk_text(still) + "; shaken for " +
+             rounded(shaking, 2) + " s: " + digits(shook.final_density()) + ", " +
+             bulk_text(shook) + "; without friction: " + digits(smooth.final_density()) + ", " +
+             bulk_text(smooth)});
   }
   const Packing &coarse = packings[0], &fine = packings[3];
   const bool by_piston = fine.final_density() > coarse.final_density();
   result.comparisons.push_back(
       {"densities are higher with smaller grains", "as expected",
        std::string(by_piston ? "confirmed" : "refuted") + " by the piston's height (" +
-           digits(coarse.final_density()) + ", " + digits(fine.final_density()) +
-           "); away from the walls " + digits(coarse.bulk) + " and " + digits(fine.bulk) +
+           digits(coarse.final_density()) + ", " + digits(fine.final_density()) + "); " +
+           bulk_text(coarse) + ", " + bulk_text(fine) +
            ": the gain is that of a box wider in grains, and of another mixture (small grains "
            "are " +
            rounded(
@@ -103,7 +102,7 @@ FigureResult draw_figure7(const FigureOptions& options) {
                 .legend = Corner::bottom_right};
   Plot shaking_plot{.x = {.label = "time [s]"},
                     .y = {.label = "density, shaken from 2 s"},
-                    .legend = Corner::bottom_right};
+                    .legend = Corner::top_left};
   for (std::size_t k = 0; k < kRows.size(); ++k) {
     pressing.series.push_back(density_series(packings[3 * k], static_cast<int>(k), 0.5));
     shaking_plot.series.push_back(density_series(packings[3 * k + 1], static_cast<int>(k), 1.8));

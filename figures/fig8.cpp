@@ -1,7 +1,7 @@
 // Figure 8 of the paper: medium and small grains leave space for a large one, seen from below.
 //
-// The large grain falls onto the others, which lie at the bottom of the box, and reaches it while
-// the six pictures are taken. The video shows the same.
+// A piston presses the large grain to the floor while the six pictures are taken. The video shows
+// the same.
 
 #include "figure.hpp"
 #include "scene_run.hpp"
@@ -118,7 +118,7 @@ FigureResult draw_figure8(const FigureOptions& options) {
   FigureResult result;
   result.caption =
       "One large, 6 medium and 173 small grains (radii 5 : 2 : 1) from below, through the floor: "
-      "the large grain falls onto the others, pushes through, and they rearrange around it.";
+      "a piston presses the large grain down, and the others leave space for it.";
   result.comparisons = {
       {"grains", "one large among medium and small ones",
        std::to_string(run->count()) + ": 1, 6 and 173"},

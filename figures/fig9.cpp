@@ -85,7 +85,7 @@ Closest run_closest(const FigureOptions& options) {
   p.name = "closest";
   p.position = run->positions();
   p.radius = run->radii();
-  p.box = box;
+  p.box = p.at_first = box;
   std::tie(p.bulk, p.bulk_count) = bulk_density(p.position, p.radius, box);
   p.edges_per_site = static_cast<double>(run->neighbourhood().edges()) / run->count();
   p.audited = run->audit().contacts();
@@ -148,7 +148,7 @@ void add_density_axis(DisplayList& list, const Box& box, const std::vector<AxisR
                    .across = Across::centre});
   };
   add_bound(kRandomClose, "random close");
-  add_bound(kClosestPacking, "$\\pi/(3\\sqrt{2})$");
+  add_bound(kClosestPacking, "closest, 0.7405");
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const AxisRow& row = rows[k];
     const double y = top - 6 - (static_cast<double>(k) + 0.5) * step;
@@ -182,8 +182,7 @@ void add_key(DisplayList& list, const Vec<2>& low) {
                    .at = {x + 6, low[1]},
                    .size = style::kSmallText,
                    .along = Along::middle});
-    x += k % 2 == 0 ? 66 : 86;
-    if (k == 2) x += 14;
+    x += k == 0 ? 70 : k == 1 ? 92 : 94;
   }
 }
 
@@ -260,7 +259,7 @@ FigureResult draw_figure9(const FigureOptions& options) {
             .legend = Corner::top_left});
   letter(0, row_height - 4, "(b)");
   add_density_axis(list, {{16, 14}, {style::kPage - 6, row_height - 6}}, rows);
-  add_key(list, {120, 5});
+  add_key(list, {110, 5});
   paint_png(list, options.out / "fig9.png", 300);
   paint_pdf(list, options.out / "fig9.pdf");
 

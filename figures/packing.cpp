@@ -54,6 +54,7 @@ class Runner {
     const std::unique_ptr<Run<3>> run = make_scene_run(job_.scene);
     Packing packing;
     packing.name = job_.name;
+    packing.at_first = inside_of(run->walls());
     const double solid = solid_volume(run->radii());
     double next = 0;
     while (!run->finished()) {
@@ -113,7 +114,8 @@ Scene<3> packing_scene(const FigureOptions& options, const std::string& file) {
     fill.count = *fill.count / 8;
     fill.radius = 2 * std::get<double>(fill.radius);
   }
-  scene.law.stiffness *= 2;  // proportional to the radius
+  scene.law.stiffness *= 2.0 / 8;  // proportional to the radius, and softer: half the steps
+  scene.audit = false;  // against all pairs at every step, it would cost more than the run
   return scene;
 }
 
@@ -231,9 +233,7 @@ Series density_series(const Packing& packing, int index, double from) {
 void add_packing(DisplayList& list, const Vec<2>& low, double width, const Packing& packing,
                  ColourBy by, bool quick, const std::vector<std::string>& text) {
   Scene3 scene;
-  const Box3 whole{
-      packing.box.min(),
-      {packing.box.max().x(), packing.box.max().y(), std::max(1.0, packing.box.max().z())}};
+  const Box3 whole{packing.at_first.min(), packing.at_first.max()};
   const double smallest = packing.radius.minCoeff();
   for (Eigen::Index i = 0; i < packing.radius.size(); ++i) {
     const Vec<3> x = packing.position.col(i);
@@ -245,12 +245,15 @@ void add_packing(DisplayList& list, const Vec<2>& low, double width, const Packi
     scene.balls.push_back({x, packing.radius[i], tint});
   }
   add_edges(scene, whole);
-  const Vec<3> a = packing.box.min(), b = packing.box.max();
-  const std::array<Vec<3>, 4> piston{Vec<3>(a.x(), a.y(), b.z()), Vec<3>(b.x(), a.y(), b.z()),
-                                     Vec<3>(b.x(), b.y(), b.z()), Vec<3>(a.x(), b.y(), b.z())};
-  scene.panes.push_back({piston});
-  for (std::size_t k = 0; k < 4; ++k) {
-    scene.lines.push_back({piston[k], piston[(k + 1) % 4], {style::kWall, style::kMedium}});
+  const Vec<3> a = whole.low;
+  const Vec<3> b{whole.high.x(), whole.high.y(), packing.box.max().z()};
+  if (b.z() < whole.high.z()) {
+    const std::array<Vec<3>, 4> piston{Vec<3>(a.x(), a.y(), b.z()), Vec<3>(b.x(), a.y(), b.z()),
+                                       Vec<3>(b.x(), b.y(), b.z()), Vec<3>(a.x(), b.y(), b.z())};
+    scene.panes.push_back({piston});
+    for (std::size_t k = 0; k < 4; ++k) {
+      scene.lines.push_back({piston[k], piston[(k + 1) % 4], {style::kWall, style::kMedium}});
+    }
   }
   scene.floor = Floor{whole.low.z()};
   scene.camera = look(whole, {0.5, 0.8, -0.4}, {0, 0, 1}, 1, 0.4);
@@ -265,6 +268,12 @@ void add_packing(DisplayList& list, const Vec<2>& low, double width, const Packi
                    .along = Along::top});
     y -= 11;
   }
+}
+
+std::string bulk_text(const Packing& packing) {
+  if (packing.bulk_count == 0) return "no cell away from the walls";
+  return rounded(packing.bulk, 3) + " in the " + std::to_string(packing.bulk_count) +
+         " cells away from the walls";
 }
 
 std::vector<Fact> packing_facts(const std::vector<Packing>& packings) {

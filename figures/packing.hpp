@@ -37,13 +37,14 @@ struct PackingJob {
 /// What is left of a run.
 struct Packing {
   std::string name;
-  std::vector<double> time;     ///< [s]
-  std::vector<double> density;  ///< at these times, by the piston's height [-]
-  Columns<3> position;          ///< at the end, 3 x N [m]
-  Eigen::VectorXd radius;       ///< N [m]
-  Eigen::AlignedBox3d box;      ///< inside the walls, at the end
-  double bulk = 0;              ///< density of the Laguerre cells away from all walls [-]
-  int bulk_count = 0;           ///< cells in that
+  std::vector<double> time;      ///< [s]
+  std::vector<double> density;   ///< at these times, by the piston's height [-]
+  Columns<3> position;           ///< at the end, 3 x N [m]
+  Eigen::VectorXd radius;        ///< N [m]
+  Eigen::AlignedBox3d box;       ///< inside the walls, at the end
+  Eigen::AlignedBox3d at_first;  ///< the same at time 0
+  double bulk = 0;               ///< density of the Laguerre cells away from all walls [-]
+  int bulk_count = 0;            ///< cells in that
   double edges_per_site = 0;
   double seconds = 0;                      ///< wall clock
   std::vector<ContactRecord<3>> contacts;  ///< at the end
@@ -82,13 +83,17 @@ std::pair<double, int> bulk_density(const Columns<3>& position, const Eigen::Vec
 /// Positions and radii of a packing at its end as CSV.
 std::string packing_csv(const Packing& packing);
 
+/// The density away from the walls and of how many cells it is, in words.
+std::string bulk_text(const Packing& packing);
+
 /// Density against time.
 Series density_series(const Packing& packing, int index, double from);
 
 /// What colours the spheres of a picture.
 enum class ColourBy { height, radius };
 
-/// Adds a picture of a packing in its box, the piston a pane of glass, and below it lines of text.
+/// Adds a picture of a packing in its box, the piston a pane of glass if it has come down, and
+/// lines of text below.
 /// @param low  lower left corner on the page [pt]
 /// @param width of the picture, which is a square [pt]
 void add_packing(DisplayList& list, const Vec<2>& low, double width, const Packing& packing,
