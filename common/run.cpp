@@ -192,8 +192,11 @@ std::vector<std::pair<std::string, std::string>> facts(const Run<Dim>& run) {
     fact("triangulation updates", std::to_string(cost->updates) + ", " +
                                       std::to_string(cost->moved) + " grains moved, " +
                                       std::to_string(cost->ladder.flips) + " flips");
-    fact("repairs", std::to_string(cost->ladder.extracted + cost->ladder.unstuck) +
-                        " grains taken out, " + std::to_string(cost->ladder.rebuilds) +
+    fact("repairs", std::to_string(cost->ladder.extracted) + " grains taken out, " +
+                        std::to_string(cost->ladder.unstuck) +
+                        (Dim == 2 ? " more where flips stuck, " : " cavities filled anew, ") +
+                        std::to_string(cost->ladder.reinserted) + " put back, " +
+                        std::to_string(cost->ladder.rebuilds) +
                         " rebuilds, " + std::to_string(cost->searched) + " range searches");
   }
   return list;

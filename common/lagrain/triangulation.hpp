@@ -1,7 +1,8 @@
 #pragma once
 /// @file
-/// What every dynamic regular triangulation offers, whatever its dimension. Dimension 2 is built in
-/// dim2; `common` only names the interface, so that the neighbourhood is written once.
+/// What every dynamic regular triangulation offers, whatever its dimension. Dimensions 2 and 3 are
+/// built in dim2 and dim3; `common` only names the interface, so that the neighbourhood is written
+/// once.
 
 #include <lagrain/vec.hpp>
 
@@ -20,11 +21,14 @@ class Triangulation;
 /// What an update had to do, rung by rung of the ladder. The counts of several updates add up.
 struct UpdateReport {
   std::int64_t flips = 0;  ///< local flips
-  std::int64_t extracted =
-      0;  ///< sites taken out before a move because a simplex would have inverted
-  std::int64_t unstuck = 0;     ///< sites taken out because the flips could not finish
-  std::int64_t reinserted = 0;  ///< sites put back: extracted, unstuck, or hidden and now visible
-  std::int64_t rebuilds = 0;    ///< builds from nothing, the last rung
+  /// Sites taken out before a move because a simplex would have inverted.
+  std::int64_t extracted = 0;
+  /// Places where flips could not finish: in the plane a site taken out, in space a cavity filled
+  /// anew.
+  std::int64_t unstuck = 0;
+  /// Sites put back: those taken out, and those that were hidden and are visible now.
+  std::int64_t reinserted = 0;
+  std::int64_t rebuilds = 0;  ///< builds from nothing, the last rung
 
   UpdateReport& operator+=(const UpdateReport& other) {
     flips += other.flips;

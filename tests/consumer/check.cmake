@@ -22,6 +22,7 @@ run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK}/build -G ${GENERATO
   -D README_PROGRAM=${WORK}/readme.cpp)
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/discs)
+run(${WORK}/build/spheres)
 run(${WORK}/build/readme)
 if(RENDER)
   run(${WORK}/build/picture)
