@@ -10,10 +10,13 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace lagrain::test {
@@ -33,14 +36,15 @@ enum class CloudKind {
   kFar,         ///< 10^6 radii from the origin
   kCoincident,  ///< centres on top of each other
   kLine,        ///< all on one line
+  kFlat,        ///< all on one plane (in the plane: on one line, along an axis)
   kLattice,     ///< touching, equal: every tie there is
   kOne,
   kNone
 };
 inline constexpr CloudKind kClouds[] = {
-    CloudKind::kUniform, CloudKind::kSizes,      CloudKind::kClusters,
-    CloudKind::kFar,     CloudKind::kCoincident, CloudKind::kLine,
-    CloudKind::kLattice, CloudKind::kOne,        CloudKind::kNone};
+    CloudKind::kUniform,    CloudKind::kSizes, CloudKind::kClusters, CloudKind::kFar,
+    CloudKind::kCoincident, CloudKind::kLine,  CloudKind::kFlat,     CloudKind::kLattice,
+    CloudKind::kOne,        CloudKind::kNone};
 
 template <int Dim>
 Cloud<Dim> make_cloud(CloudKind kind, int count, Random& random) {
@@ -61,6 +65,7 @@ Cloud<Dim> make_cloud(CloudKind kind, int count, Random& random) {
       if (kind == CloudKind::kLine) c = 1.5 * i;
       if (kind == CloudKind::kLattice) c = 2 * (rest % row);
     }
+    if (kind == CloudKind::kFlat) cloud.x(Dim - 1, i) = 0;
     if (kind == CloudKind::kLattice) cloud.radius[i] = 1;
   }
   return cloud;
@@ -142,7 +147,7 @@ MotionScene<Dim> drifting(int count, std::uint64_t seed) {
   return scene;
 }
 
-/// Sizes from 1 to `ratio`, scattered without overlap, the small ones everywhere between.
+/// Sizes from 1 to `ratio`, scattered without overlap, every other one close to a larger one.
 template <int Dim>
 MotionScene<Dim> size_mix(int count, double ratio, std::uint64_t seed) {
   Random random(seed);
@@ -159,13 +164,21 @@ MotionScene<Dim> size_mix(int count, double ratio, std::uint64_t seed) {
     g.mass = grain_volume<Dim>(r);
     for (bool fits = false; !fits;) {
       for (int d = 0; d < Dim; ++d) g.position[d] = random.uniform(r, side - r);
-      fits = true;
+      if (scene.grains.size() % 2 == 1) {
+        const auto k = random.below(static_cast<int>(scene.grains.size()));
+        const Grain<Dim>& o = scene.grains[static_cast<std::size_t>(k)];
+        const Vec<Dim> away = (g.position - o.position).normalized();
+        g.position = o.position + (o.radius + r * random.uniform(1, 2)) * away;
+      }
+      fits = g.position.minCoeff() > r && g.position.maxCoeff() < side - r;
       for (const Grain<Dim>& o : scene.grains) {
         fits = fits && (o.position - g.position).norm() > o.radius + r;
       }
     }
-    // A tenth of the smallest radius per safe step would be 0.1 r / (0.1 pi r) = 100 m/s: a third.
-    for (int d = 0; d < Dim; ++d) g.velocity[d] = 30 * random.normal();
+    // In the plane, a tenth of its radius per safe step of a grain's own would be 0.1 r / (0.1 pi
+    // r) = 100 m/s: a third. In space such steps go with r^1.5.
+    const double speed = 30 * std::pow(r, 1 - 0.5 * Dim);
+    for (int d = 0; d < Dim; ++d) g.velocity[d] = speed * random.normal();
     scene.grains.push_back(g);
   }
   // Numbers must not follow sizes.
@@ -189,6 +202,122 @@ MotionScene<Dim> bullet(int count, std::uint64_t seed) {
   shot.position = packed.low - 3 * (packed.high - packed.low).normalized();
   shot.velocity = 1000 * (packed.high - packed.low).normalized();
   scene.grains.push_back(shot);
+  return scene;
+}
+
+/// Grains of radius and density 1 at these places, at rest.
+template <int Dim>
+std::vector<Grain<Dim>> equal_grains(const std::vector<Vec<Dim>>& places) {
+  std::vector<Grain<Dim>> grains;
+  for (const Vec<Dim>& place : places) {
+    Grain<Dim> g;
+    g.radius = 1;
+    g.mass = grain_volume<Dim>(1);
+    g.position = place;
+    grains.push_back(g);
+  }
+  return grains;
+}
+
+/// The places of a lattice of `side` layers in each direction, from the first corner on: points of
+/// whole coordinates, all of them or those of even sum, so that nearest ones are 2 apart [m]. In
+/// space the latter is face-centred cubic, in the plane a square lattice that stands on its corner.
+template <int Dim>
+std::vector<Vec<Dim>> crystal_places(int side, bool face_centred) {
+  std::vector<Vec<Dim>> places;
+  const double unit = face_centred ? std::sqrt(2.0) : 2;
+  for (int k = 0; k < static_cast<int>(std::lround(std::pow(side, Dim))); ++k) {
+    Vec<Dim> place;
+    int sum = 0;
+    for (int d = 0, rest = k; d < Dim; ++d, rest /= side) {
+      place[d] = 1 + unit * (rest % side);
+      sum += rest % side;
+    }
+    if (!face_centred || sum % 2 == 0) places.push_back(place);
+  }
+  return places;
+}
+
+/// How a perfect crystal of touching grains begins to move.
+struct Disorder {
+  double room = 0;  ///< between the grains and the walls on the far sides [m]
+  double kick = 0;  ///< speed of the last grain, obliquely into the others [m/s]
+  double stir = 0;  ///< standard deviation of all velocity components [m/s]
+};
+
+/// A perfect crystal in a box, under gravity.
+template <int Dim>
+MotionScene<Dim> crystal(int side, bool face_centred, const Disorder& disorder) {
+  Random random(1);
+  MotionScene<Dim> scene{face_centred ? "face-centred crystal" : "cubic crystal",
+                         equal_grains<Dim>(crystal_places<Dim>(side, face_centred)),
+                         {},
+                         -10 * up<Dim>()};
+  for (auto& g : scene.grains) {
+    for (int d = 0; d < Dim; ++d) g.velocity[d] = disorder.stir * random.normal();
+  }
+  scene.grains.back().velocity -= disorder.kick * oblique<Dim>();
+  const double far = 2 + (side - 1) * (face_centred ? std::sqrt(2.0) : 2) + disorder.room;
+  scene.walls = box<Dim>(Vec<Dim>::Zero(), Vec<Dim>::Constant(far));
+  return scene;
+}
+
+/// A cubic crystal in a box whose floor shakes.
+template <int Dim>
+MotionScene<Dim> shaken_box(int side, const Disorder& disorder) {
+  MotionScene<Dim> scene = crystal<Dim>(side, false, disorder);
+  scene.name = "shaken box";
+  constexpr std::size_t kFloor = 2 * (Dim - 1);
+  scene.walls[kFloor].motion = Shake<Dim>{.amplitude = 0.2 * up<Dim>(), .frequency = 4};
+  return scene;
+}
+
+/// One layer of equal grains on a floor between walls, which slide and roll about on it: a flat set
+/// until friction or a grain dropped from above lifts the first of them.
+template <int Dim>
+MotionScene<Dim> monolayer(int count, bool dropped, std::uint64_t seed) {
+  Random random(seed);
+  MotionScene<Dim> scene{dropped ? "monolayer, and one from above" : "monolayer", {}, {}};
+  int side = 1;
+  while (std::pow(side, Dim - 1) < count) ++side;
+  std::vector<Vec<Dim>> places;
+  for (int k = 0; k < count; ++k) {
+    Vec<Dim> place = up<Dim>();
+    for (int d = 0, rest = k; d < Dim - 1; ++d, rest /= side) {
+      place[d] = 1.05 + 2.1 * (rest % side);
+    }
+    places.push_back(place);
+  }
+  if (dropped) {
+    Vec<Dim> above = Vec<Dim>::Constant(1.05 * side);
+    above[Dim - 1] = 4;
+    places.push_back(above);
+  }
+  scene.grains = equal_grains<Dim>(places);
+  for (int k = 0; k < count; ++k) {
+    Vec<Dim>& velocity = scene.grains[static_cast<std::size_t>(k)].velocity;
+    for (int d = 0; d < Dim - 1; ++d) velocity[d] = random.normal();
+  }
+  if (dropped) scene.grains.back().velocity = -10 * up<Dim>();
+  scene.walls = box<Dim>(Vec<Dim>::Zero(), Vec<Dim>::Constant(2.1 * side));
+  scene.gravity = -10 * up<Dim>();
+  return scene;
+}
+
+/// Equal grains in a row in the open that meet; the second one also moves across, at `aside` [m/s].
+template <int Dim>
+MotionScene<Dim> row(int count, const Vec<Dim>& direction, double aside) {
+  std::vector<Vec<Dim>> places;
+  for (int k = 0; k < count; ++k) places.push_back((2.0 + 0.01 * (k % 3)) * k * direction);
+  MotionScene<Dim> scene{"row", equal_grains<Dim>(places), {}};
+  for (int k = 0; k < count; ++k) {
+    scene.grains[static_cast<std::size_t>(k)].velocity =
+        (0.5 * count - k) * 0.3 * direction;  // towards the middle
+  }
+  Eigen::Index axis = 0;
+  direction.cwiseAbs().minCoeff(&axis);
+  const Vec<Dim> across = Vec<Dim>::Unit(axis) - direction[axis] * direction;
+  scene.grains[1].velocity += aside * across;
   return scene;
 }
 
