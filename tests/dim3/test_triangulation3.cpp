@@ -203,6 +203,39 @@ TEST_SUITE("triangulation3") {
     }
   }
 
+  TEST_CASE("any sequence of batches that move, weigh, snap, flatten and heap up sites") {
+    for (int seed = 0; seed < test::cases(40, 2000); ++seed) {
+      CAPTURE(seed);
+      Random random(static_cast<std::uint64_t>(seed));
+      const auto kinds = test3::all_kinds(random, 3 + random.below(2));
+      auto s = kinds[static_cast<std::size_t>(random.below(static_cast<int>(kinds.size())))];
+      CAPTURE(s.name);
+      auto t = test::built(s);
+      for (int step = 0; step < 15; ++step) {
+        CAPTURE(step);
+        const int what = random.below(7);
+        auto ids = test::some_ids(random, s.size(), random.uniform() < 0.3 ? 1 : 0.1);
+        if (ids.empty()) ids = {0};
+        const double distance = s.r * std::pow(10.0, random.uniform(-14, 3));
+        const Vec<3> corner = s.x.col(ids[0]);
+        for (const int i : ids) {
+          const int axis = random.below(3);
+          if (what == 0) s.x.col(i) += distance * test::random_direction<3>(random);
+          if (what == 1) s.x.col(i) += 0.1 * s.r * test::random_direction<3>(random);
+          if (what == 2) s.w[i] *= random.uniform(0, 2.5);
+          if (what == 3) s.x(axis, i) = std::round(s.x(axis, i) / s.r) * s.r;
+          if (what == 4) s.x(axis, i) = corner[axis];
+          if (what == 5) s.x(axis, i) = std::max(s.x(axis, i), corner[axis]);
+          if (what == 6) s.x.col(i) = s.x.col(random.below(s.size()));
+        }
+
+        t.move(ids, s.x, s.w);
+
+        CHECK_AS_BUILT(t, s);
+      }
+    }
+  }
+
   TEST_CASE("a set taken away site by site is a triangulation all the way") {
     for (int seed = 0; seed < test::cases(2, 100); ++seed) {
       Random random(static_cast<std::uint64_t>(seed));

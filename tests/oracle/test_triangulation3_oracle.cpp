@@ -252,7 +252,7 @@ TEST_SUITE("triangulation3 against CGAL") {
   }
 
   TEST_CASE("build, moves of one, few and all sites, and weight changes agree") {
-    for (int seed = 0; seed < test::cases(5, 100); ++seed) {
+    for (int seed = 0; seed < test::cases(5, 50); ++seed) {
       Random random(static_cast<std::uint64_t>(seed));
       for (const bool general : {true, false}) {
         for (test3::Sites s : general ? general_kinds(random) : tied_kinds(random)) {
@@ -285,7 +285,7 @@ TEST_SUITE("triangulation3 against CGAL") {
   }
 
   TEST_CASE("insertions and removals in any order agree") {
-    for (int seed = 0; seed < test::cases(5, 200); ++seed) {
+    for (int seed = 0; seed < test::cases(5, 100); ++seed) {
       Random random(static_cast<std::uint64_t>(seed));
       for (const bool general : {true, false}) {
         for (const auto& s : general ? general_kinds(random) : tied_kinds(random)) {
