@@ -204,7 +204,7 @@ TEST_SUITE("triangulation3") {
   }
 
   TEST_CASE("any sequence of batches that move, weigh, snap, flatten and heap up sites") {
-    for (int seed = 0; seed < test::cases(40, 2000); ++seed) {
+    for (int seed = 0; seed < test::cases(40, 500); ++seed) {
       CAPTURE(seed);
       Random random(static_cast<std::uint64_t>(seed));
       const auto kinds = test3::all_kinds(random, 3 + random.below(2));
