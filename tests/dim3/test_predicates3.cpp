@@ -135,7 +135,7 @@ bool make_positive(Five& s) {
 TEST_SUITE("predicates3") {
   TEST_CASE("orientation has the sign of rational arithmetic, for any numbers") {
     int ties = 0;
-    for (int seed = 0; seed < test::cases(5000, 200000); ++seed) {
+    for (int seed = 0; seed < test::cases(5000, 100000); ++seed) {
       Random random(static_cast<std::uint64_t>(seed));
       const Five s = draw(random, seed % kKinds);
 
@@ -153,7 +153,7 @@ TEST_SUITE("predicates3") {
 
   TEST_CASE("the power test has the sign of rational arithmetic, for any numbers") {
     int ties = 0;
-    for (int seed = 0; seed < test::cases(5000, 200000); ++seed) {
+    for (int seed = 0; seed < test::cases(5000, 100000); ++seed) {
       Random random(static_cast<std::uint64_t>(seed));
       Five s = draw(random, seed % kKinds);
       if (!make_positive(s)) continue;
@@ -196,7 +196,7 @@ TEST_SUITE("predicates3") {
     // On integers below 3 the first perturbation that matters beats the next if they differ by
     // 2^-10: the volumes that weigh them are at most 16.
     int ties = 0;
-    for (int seed = 0; seed < test::cases(5000, 200000); ++seed) {
+    for (int seed = 0; seed < test::cases(5000, 100000); ++seed) {
       Random random(static_cast<std::uint64_t>(seed));
       Five s = draw(random, 1);
       if (!make_positive(s)) continue;

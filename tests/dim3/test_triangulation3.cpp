@@ -30,7 +30,7 @@ TEST_SUITE("triangulation3") {
   }
 
   TEST_CASE("a move gives the triangulation that build gives, and moving back the former one") {
-    for (int seed = 0; seed < test::cases(3, 200); ++seed) {
+    for (int seed = 0; seed < test::cases(2, 60); ++seed) {
       Random random(static_cast<std::uint64_t>(seed));
       for (const auto& s : test3::all_kinds(random)) {
         auto t = test::built(s);
@@ -100,9 +100,77 @@ TEST_SUITE("triangulation3") {
     }
   }
 
+  TEST_CASE("all weights may change at once, where flips get stuck") {
+    UpdateReport total;
+    for (int seed = 0; seed < test::cases(4, 200); ++seed) {
+      CAPTURE(seed);
+      Random random(static_cast<std::uint64_t>(seed));
+      auto s = test3::jittered(random, 7);
+      auto t = test::built(s);
+      for (const double range : {0.1, 1.0, 4.0, 16.0, 16.0, 16.0, 0.0}) {
+        CAPTURE(range);
+        for (int i = 0; i < s.size(); ++i) s.w[i] = random.uniform(0, range);
+
+        total += t.move(test::all_ids(s.size()), s.x, s.w);
+
+        CHECK_AS_BUILT(t, s);
+      }
+    }
+    CHECK(total.unstuck > 0);
+  }
+
+  TEST_CASE("a crystal shaken out of order and back") {
+    UpdateReport total;
+    for (int seed = 0; seed < test::cases(3, 100); ++seed) {
+      CAPTURE(seed);
+      Random random(static_cast<std::uint64_t>(seed));
+      for (const auto& lattice :
+           {test3::fcc_lattice(9, 1), test3::hcp_lattice(7, 1), test3::cubic_lattice(7, 1)}) {
+        CAPTURE(lattice.name);
+        const auto all = test::all_ids(lattice.size());
+        auto s = test::displaced(lattice, all, 0.001 * lattice.r, random);
+        auto t = test::built(s);
+        for (const double distance : {0.01, 0.03, 0.1, 0.1}) {
+          CAPTURE(distance);
+          s = test::displaced(s, all, distance * lattice.r, random);
+
+          total += t.move(all, s.x, s.w);
+
+          CHECK_AS_BUILT(t, s);
+        }
+        total += t.move(all, lattice.x, lattice.w);
+        CHECK_AS_BUILT(t, lattice);
+      }
+    }
+    CHECK(total.extracted > 0);
+  }
+
+  TEST_CASE("the unit of length does not matter, however large or small") {
+    Random random(13);
+    for (const auto& s : test3::all_kinds(random, 3)) {
+      const auto expected = test::built(s);
+      for (const int power : {-400, -250, -60, 60, 250, 400}) {
+        CAPTURE(s.name);
+        CAPTURE(power);
+        auto scaled = s;
+        scaled.x *= std::ldexp(1.0, power);
+        scaled.w *= std::ldexp(1.0, 2 * power);
+
+        auto t = test::built(scaled);
+
+        CHECK(test::audited(t) == "");
+        CHECK(test::same(t, expected));
+        const std::vector<int> one{random.below(s.size())};
+        const auto moved = test::displaced(scaled, one, std::ldexp(s.r, power), random);
+        t.move(one, moved.x, moved.w);
+        CHECK_AS_BUILT(t, moved);
+      }
+    }
+  }
+
   TEST_CASE(
       "any sequence of moves, insertions and removals ends in the triangulation of what is there") {
-    for (int seed = 0; seed < test::cases(3, 200); ++seed) {
+    for (int seed = 0; seed < test::cases(3, 100); ++seed) {
       Random random(static_cast<std::uint64_t>(seed));
       for (auto s : test3::all_kinds(random)) {
         std::vector<bool> present(static_cast<std::size_t>(s.size()), true);
@@ -130,6 +198,39 @@ TEST_SUITE("triangulation3") {
           CHECK(t.contains(i) == present[static_cast<std::size_t>(i)]);
           if (!t.contains(i)) t.insert(i, s.x.col(i), s.w[i]);
         }
+        CHECK_AS_BUILT(t, s);
+      }
+    }
+  }
+
+  TEST_CASE("any sequence of batches that move, weigh, snap, flatten and heap up sites") {
+    for (int seed = 0; seed < test::cases(40, 500); ++seed) {
+      CAPTURE(seed);
+      Random random(static_cast<std::uint64_t>(seed));
+      const auto kinds = test3::all_kinds(random, 3 + random.below(2));
+      auto s = kinds[static_cast<std::size_t>(random.below(static_cast<int>(kinds.size())))];
+      CAPTURE(s.name);
+      auto t = test::built(s);
+      for (int step = 0; step < 15; ++step) {
+        CAPTURE(step);
+        const int what = random.below(7);
+        auto ids = test::some_ids(random, s.size(), random.uniform() < 0.3 ? 1 : 0.1);
+        if (ids.empty()) ids = {0};
+        const double distance = s.r * std::pow(10.0, random.uniform(-14, 3));
+        const Vec<3> corner = s.x.col(ids[0]);
+        for (const int i : ids) {
+          const int axis = random.below(3);
+          if (what == 0) s.x.col(i) += distance * test::random_direction<3>(random);
+          if (what == 1) s.x.col(i) += 0.1 * s.r * test::random_direction<3>(random);
+          if (what == 2) s.w[i] *= random.uniform(0, 2.5);
+          if (what == 3) s.x(axis, i) = std::round(s.x(axis, i) / s.r) * s.r;
+          if (what == 4) s.x(axis, i) = corner[axis];
+          if (what == 5) s.x(axis, i) = std::max(s.x(axis, i), corner[axis]);
+          if (what == 6) s.x.col(i) = s.x.col(random.below(s.size()));
+        }
+
+        t.move(ids, s.x, s.w);
+
         CHECK_AS_BUILT(t, s);
       }
     }

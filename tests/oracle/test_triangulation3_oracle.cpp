@@ -82,43 +82,46 @@ Answer read(const Oracle& oracle) {
   return answer;
 }
 
-/// Ties of a set that spans space. An edge is certain if its dual is a polygon with area: it runs
-/// through more than two different power centres, or is on the hull but not inside a flat part.
+/// Ties of a set that spans space. An edge is certain if its dual has an area: it runs through more
+/// than two power centres, where a ray to infinity counts as one.
 void find_ties(const Oracle& oracle, Answer& answer) {
   const auto power_side = Kernel().power_side_of_oriented_power_sphere_3_object();
-  const auto coplanar = Kernel().orientation_3_object();
-  // Two cells with one power centre, or two coplanar hull facets.
-  const auto tie = [&](Oracle::Cell_handle c, int i) {
+  const auto orientation_of = Kernel().orientation_3_object();
+  enum class Pair { different, tied, tied_on_hull };
+  // Do a cell and its neighbour have one power centre, or is their ray the same?
+  const auto compare = [&](Oracle::Cell_handle c, int i) {
     const auto d = c->neighbor(i);
     const bool c_out = oracle.is_infinite(c), d_out = oracle.is_infinite(d);
-    const auto opposite = d->vertex(d->index(c));
-    if (!c_out && !d_out) {
-      return power_side(c->vertex(0)->point(), c->vertex(1)->point(), c->vertex(2)->point(),
-                        c->vertex(3)->point(), opposite->point()) == CGAL::ON_ORIENTED_BOUNDARY;
+    if (c_out != d_out) return Pair::different;
+    std::vector<Kernel::Weighted_point_3> p;
+    for (int k = 0; k < 4; ++k) {
+      if (!oracle.is_infinite(c->vertex(k))) p.push_back(c->vertex(k)->point());
     }
-    if (c_out && d_out) {
-      std::array<Kernel::Point_3, 4> p;
-      for (int k = 0, l = 0; k < 4; ++k) {
-        if (!oracle.is_infinite(c->vertex(k))) {
-          p[static_cast<std::size_t>(l++)] = c->vertex(k)->point().point();
-        }
-      }
-      return coplanar(p[0], p[1], p[2], opposite->point().point()) == CGAL::COPLANAR;
+    const auto q = d->vertex(d->index(c))->point();
+    if (!c_out) {
+      return power_side(p[0], p[1], p[2], p[3], q) == CGAL::ON_ORIENTED_BOUNDARY ? Pair::tied
+                                                                                 : Pair::different;
     }
-    return false;
+    const bool flat =
+        orientation_of(p[0].point(), p[1].point(), p[2].point(), q.point()) == CGAL::COPLANAR;
+    return flat && power_side(p[0], p[1], p[2], q) == CGAL::ON_ORIENTED_BOUNDARY
+               ? Pair::tied_on_hull
+               : Pair::different;
   };
   for (auto e = oracle.finite_edges_begin(); e != oracle.finite_edges_end(); ++e) {
     auto c = oracle.incident_cells(*e);
     const auto first = c;
-    int changes = 0;
+    int different = 0;
+    bool area = true;  // two rays on one line have none between them
     do {
       const Oracle::Cell_handle now = c;
       ++c;
-      const bool tied = tie(now, now->index(Oracle::Cell_handle(c)));
-      answer.ties = answer.ties || tied;
-      changes += !tied;
+      const Pair pair = compare(now, now->index(Oracle::Cell_handle(c)));
+      answer.ties = answer.ties || pair != Pair::different;
+      area = area && pair != Pair::tied_on_hull;
+      different += pair == Pair::different;
     } while (c != first);
-    if (changes > 2) {
+    if (area && different > 2) {
       answer.certain.push_back(
           sorted(e->first->vertex(e->second)->info(), e->first->vertex(e->third)->info()));
     }
@@ -169,13 +172,23 @@ void check_against_cgal(const Triangulation<3>& t, const test3::Sites& s,
   CHECK(test::audited(t) == "");
   CHECK(power_valid(t, s, ids));
   CHECK(t.dimension() == answer.dimension);
-  CHECK(std::includes(ours.begin(), ours.end(), answer.certain.begin(), answer.certain.end()));
+  // A site that is tied with its own cell may be hidden or not, and edges end at it or pass it.
+  if (test::visible(t) == answer.visible) {
+    CHECK(std::includes(ours.begin(), ours.end(), answer.certain.begin(), answer.certain.end()));
+  }
   if (general) {
     CHECK(!answer.ties);
     CHECK(ours == answer.edges);
     CHECK(test::tetrahedra(t) == answer.tetrahedra);
     CHECK(test::visible(t) == answer.visible);
   }
+}
+
+/// On a plane or a line along the axes, but not tied.
+test3::Sites flattened(test3::Sites s, int axes) {
+  s.name += axes == 1 ? " in a plane" : " on a line";
+  s.x.topRows(axes).setConstant(0.3);
+  return s;
 }
 
 /// In general position, with hidden sites and without.
@@ -186,6 +199,8 @@ std::vector<test3::Sites> general_kinds(Random& random) {
           test3::polydisperse(random, 60, 100),
           test3::size_ratio(random, 60),
           test3::nearly_coplanar(random, 30),
+          flattened(test3::overlapping(random, 40), 1),
+          flattened(test3::uniform(random, 30), 2),
           test::far_away(test3::overlapping(random, 40))};
 }
 
@@ -237,7 +252,7 @@ TEST_SUITE("triangulation3 against CGAL") {
   }
 
   TEST_CASE("build, moves of one, few and all sites, and weight changes agree") {
-    for (int seed = 0; seed < test::cases(5, 100); ++seed) {
+    for (int seed = 0; seed < test::cases(5, 50); ++seed) {
       Random random(static_cast<std::uint64_t>(seed));
       for (const bool general : {true, false}) {
         for (test3::Sites s : general ? general_kinds(random) : tied_kinds(random)) {
@@ -270,7 +285,7 @@ TEST_SUITE("triangulation3 against CGAL") {
   }
 
   TEST_CASE("insertions and removals in any order agree") {
-    for (int seed = 0; seed < test::cases(5, 200); ++seed) {
+    for (int seed = 0; seed < test::cases(5, 100); ++seed) {
       Random random(static_cast<std::uint64_t>(seed));
       for (const bool general : {true, false}) {
         for (const auto& s : general ? general_kinds(random) : tied_kinds(random)) {
