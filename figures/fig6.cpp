@@ -99,6 +99,7 @@ FigureResult draw_figure6(const FigureOptions& options) {
                    .size = style::kTitle,
                    .along = Along::top});
     const double difference = p.final_density() - kRows[k].paper;
+    const double rough = (k == 0 ? swept.back() : packings[sweep_end + k - 1]).final_density();
     result.comparisons.push_back(
         {"density of n = " + std::to_string(kRows[k].count) + ", r = " + kRows[k].radius +
              (options.quick ? " (quick: an eighth as many, twice as large)" : ""),
@@ -106,9 +107,12 @@ FigureResult draw_figure6(const FigureOptions& options) {
          digits(p.final_density()) + " by the piston (" + (difference < 0 ? "" : "+") +
              rounded(difference, 2) + "), " + bulk_text(p) + ": the walls cost " +
              digits(p.bulk - p.final_density()) + ", randomness " +
-             digits(kClosestPacking - p.bulk) + " of the closest packing's 0.7405; with friction " +
-             shortest(kFrictions.back()) + " it is " +
-             digits((k == 0 ? swept.back() : packings[sweep_end + k - 1]).final_density())});
+             digits(kClosestPacking - p.bulk) + " of the closest packing's 0.7405. With friction " +
+             shortest(kFrictions.back()) + " in place of " + shortest(base.law.friction) +
+             " it is " + digits(rough) + " (" + (rough < kRows[k].paper ? "" : "+") +
+             rounded(rough - kRows[k].paper, 2) + ")" +
+             (std::abs(rough - kRows[k].paper) < 0.01 ? ": friction accounts for the difference"
+                                                      : "")});
   }
 
   const auto place = [&](std::size_t k, const char* letter) {

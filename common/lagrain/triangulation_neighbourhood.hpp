@@ -218,7 +218,6 @@ class TriangulationNeighbourhood {
   Eigen::VectorXd weight_;  ///< (r + skin)^2
   Eigen::VectorXd skin_;
   Vec<Dim> drift_ = Vec<Dim>::Zero();  ///< of the grains against the references' frame [m]
-  std::vector<Pair> edges_;            ///< of T, sorted
   std::vector<int> uncertain_;         ///< grains whose pairs T may lack
   TriangulationCost cost_;
 
