@@ -2,11 +2,13 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Spatial_sort_traits_adapter_3.h>
+#include <CGAL/hilbert_sort.h>
 #include <CGAL/property_map.h>
 #include <CGAL/spatial_sort.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace lagrain {
@@ -18,16 +20,21 @@ using KeyedPoint = std::pair<Kernel::Point_3, int>;
 using SortTraits =
     CGAL::Spatial_sort_traits_adapter_3<Kernel, CGAL::First_of_pair_property_map<KeyedPoint>>;
 
-/// Sites near each other in space come near each other in the order, and rounds of it double in
-/// size, so that no arrangement of sites is a bad case.
-void sort_spatially(std::vector<int>& ids, const std::vector<Site3>& sites) {
+/// Sorts ids by their sites' places along a curve that fills space: neighbours in the order are
+/// neighbours in space. With `in_rounds` in rounds that double in size, each sorted so: then no
+/// arrangement of sites is a bad case for insertion.
+void sort_spatially(std::vector<int>& ids, const std::vector<Site3>& sites, bool in_rounds) {
   std::vector<KeyedPoint> points;
   points.reserve(ids.size());
   for (const int id : ids) {
     const Site3& s = sites[static_cast<std::size_t>(id)];
     points.emplace_back(Kernel::Point_3(s.x, s.y, s.z), id);
   }
-  CGAL::spatial_sort(points.begin(), points.end(), SortTraits());
+  if (in_rounds) {
+    CGAL::spatial_sort(points.begin(), points.end(), SortTraits());
+  } else {
+    CGAL::hilbert_sort(points.begin(), points.end(), SortTraits());
+  }
   for (std::size_t k = 0; k < ids.size(); ++k) ids[k] = points[k].second;
 }
 
@@ -52,13 +59,42 @@ void Triangulation<3>::rebuild() {
   for (int id = 0; id < size(); ++id) {
     if (contains(id)) present.push_back(id);
   }
-  if (present.size() > 64) sort_spatially(present, sites_);
+  const bool large = present.size() > 64;
+  if (large) sort_spatially(present, sites_, true);
   topology_.clear(size() + 3);
   topology_.reserve_cells(7 * present.size());
   hidden_.clear();
   insert_all(present, nullptr);
+  if (large) {
+    sort_spatially(present, sites_, false);
+    sort_cells(present);
+  }
   choose_middle_at_rest();
   std::sort(hidden_.begin(), hidden_.end());
+}
+
+/// Puts the cells into memory in the order of their first site, so that what passes over all of
+/// them finds neighbours near each other.
+void Triangulation<3>::sort_cells(const std::vector<int>& site_order) {
+  std::vector<int> rank(sites_.size(), 0);
+  for (std::size_t k = 0; k < site_order.size(); ++k) {
+    rank[index(site_order[k])] = static_cast<int>(k);
+  }
+  std::vector<std::pair<int, int>> keys;
+  keys.reserve(index(topology_.cells()));
+  for (int cell = 0; cell < topology_.slots(); ++cell) {
+    if (!topology_.alive(cell)) continue;
+    int first = std::numeric_limits<int>::max();
+    for (const int v : topology_.vertices(cell)) {
+      if (v >= 0) first = std::min(first, rank[index(v)]);
+    }
+    keys.emplace_back(first, cell);
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<int> order;
+  order.reserve(keys.size());
+  for (const auto& [first, cell] : keys) order.push_back(cell);
+  topology_.renumber(order);
 }
 
 /// Builds from nothing by inserting the sites of `order`, one after the other. An insertion into a

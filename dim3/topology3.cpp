@@ -54,8 +54,26 @@ void Topology3::clear_marks() {
   ++epoch_;
 }
 
+void Topology3::renumber(std::span<const int> order) {
+  std::vector<int> place(cells_.size(), kNone);
+  for (std::size_t k = 0; k < order.size(); ++k) place[index(order[k])] = static_cast<int>(k);
+  std::vector<Cell> cells(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    cells[k] = cells_[index(order[k])];
+    for (std::size_t i = 0; i < 4; ++i) {
+      int& twin = cells[k].twin[i];
+      twin = 4 * place[index(twin >> 2)] + (twin & 3);
+      set_corner_of(cells[k].vertex[i], static_cast<int>(4 * k + i));
+    }
+  }
+  cells_.swap(cells);
+  mark_.assign(cells_.size(), 0);
+  flags_.assign(cells_.size(), 0);
+  free_.clear();
+}
+
 void Topology3::set(int cell, const Quad& quad) {
-  cells_[index(cell)].vertex = quad;
+  cells_[index(cell)] = {quad, {kNone, kNone, kNone, kNone}};
   flags_[index(cell)] = 0;
   for (int i = 0; i < 4; ++i) set_corner_of(quad[index(i)], 4 * cell + i);
 }
@@ -146,11 +164,11 @@ void Topology3::fill_from(int v, std::span<const int> hole, std::span<const int>
   for (const int corner : rim) {
     const int cell = note(twin(corner));
     for (int i = 0; i < 4; ++i) {
-      if (i == (corner & 3)) continue;
+      if (i == (corner & 3) || twin(4 * cell + i) != kNone) continue;
       // Round the edge of the rim facet without vertex i, to the next rim facet.
       int through = (corner & ~3) + i, other = corner;
       while (twin(through) >= 0) turn(through, other);
-      cells_[index(cell)].twin[index(i)] = 4 * note(twin(through)) + (other & 3);
+      link(4 * cell + i, 4 * note(twin(through)) + (other & 3));
     }
   }
   for (std::size_t k = 0; k < rim.size(); ++k) {

@@ -122,6 +122,7 @@ FigureResult draw_figure6(const FigureOptions& options) {
   };
   Plot pressing{.x = {.label = "time [s]", .low = 0.5, .high = 2},
                 .y = {.label = "density", .low = 0.2, .high = 0.6},
+                .series = {},
                 .legend = Corner::bottom_right};
   for (std::size_t k = 0; k < kRows.size(); ++k) {
     pressing.series.push_back(density_series(packings[k], static_cast<int>(k), 0.5));

@@ -71,6 +71,8 @@ class Topology3 {
   /// The corners at vertex v, one per cell of its star; uses marks.
   void star(int v, std::vector<int>& corners);
 
+  /// Puts the cells in another order, without gaps. @param order  every cell once
+  void renumber(std::span<const int> order);
   /// Appends a cell (or takes a dead slot); twins are still to be linked.
   int add(const Quad& quad);
   void release(int cell);

@@ -196,6 +196,7 @@ class Triangulation<3> {
   // Build and cavities (build3.cpp).
   void rebuild();
   void insert_all(std::span<const int> order, const Site3* away);
+  void sort_cells(const std::vector<int>& site_order);
   void first_simplex(const Quad& simplex);
   void place_auxiliaries(Quad& simplex, const Site3* away);
   bool insert_visible(int site);
