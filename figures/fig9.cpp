@@ -1,9 +1,9 @@
 // Figure 9 (not in the paper): how far random packings stay from the closest one.
 //
 // (a) The closest packing of equal spheres, face-centred cubic, run through the engine under its
-// own weight. (b) The densities of figures 6 and 7 on one axis with it. (c) The third claim of the
-// paper, measured: edges of the triangulation per site, linear in all scenes, and a family of sites
-// where they are quadratic.
+// own weight. (b) The third claim of the paper, measured: edges of the triangulation per site,
+// linear in all scenes, and a family of sites where they are quadratic. (c) The densities of
+// figures 6 and 7 on one axis with the closest packing's.
 
 #include "packing.hpp"
 #include "scene_run.hpp"
@@ -251,13 +251,13 @@ FigureResult draw_figure9(const FigureOptions& options) {
   add_packing(list, {16, list.height - 12 - picture}, picture, closest.packing, ColourBy::height,
               options.quick, {"face-centred cubic, at rest: " + rounded(closest.packing.bulk, 4)});
   const double x = picture + 32 + gap;
-  letter(x, list.height - 2, "(c)");
+  letter(x, list.height - 2, "(b)");
   add_plot(list, {{x + 14, list.height - 12 - picture - 10}, {style::kPage, list.height - 8}},
            {.x = {.label = "sites", .log = true},
             .y = {.label = "edges per site", .log = true},
             .series = {scenes, lines},
             .legend = Corner::top_left});
-  letter(0, row_height - 4, "(b)");
+  letter(0, row_height - 4, "(c)");
   add_density_axis(list, {{16, 14}, {style::kPage - 6, row_height - 6}}, rows);
   add_key(list, {110, 5});
   paint_png(list, options.out / "fig9.png", 300);
@@ -267,9 +267,9 @@ FigureResult draw_figure9(const FigureOptions& options) {
   result.caption =
       "(a) The closest packing of equal spheres, " + std::to_string(closest.packing.radius.size()) +
       " of them in square layers, after " + rounded(0.1, 2) +
-      " s under its own weight. (b) Densities of the packings of figures 6 and 7; random close "
-      "packing after Scott & Kilgour, J. Phys. D 2 (1969) 863. (c) Edges of the triangulation per "
-      "site.";
+      " s under its own weight. (b) Edges of the triangulation per site. (c) Densities of the "
+      "packings of figures 6 and 7; random close packing after Scott & Kilgour, J. Phys. D 2 "
+      "(1969) 863.";
   result.comparisons = {
       {"closest packing of equal spheres", "0.74048 (Hales)",
        rounded(closest.packing.bulk, 5) + " within, run through the engine (" +
