@@ -1,5 +1,7 @@
 #include <lagrain/triangulation2.hpp>
 
+#include "cover.hpp"
+
 #include <algorithm>
 #include <limits>
 
@@ -405,33 +407,11 @@ void Triangulation<2>::choose_folded() {
   });
 }
 
-/// A small set of moved sites with at least one in each of the triangles: where there is a choice,
-/// the site that occurs most often, as one that strayed far inverts several.
+/// Fills cover_ with moved sites, at least one in each of the triangles.
 void Triangulation<2>::choose_cover(std::span<const int> triangles) {
-  constexpr int kChosen = -1;
-  cover_.clear();
-  for (const int triangle : triangles) {
-    for (const int id : corners_of(triangle)) {
-      if (moved_place(id)) ++site_count_[index(id)];
-    }
-  }
-  for (const int triangle : triangles) {
-    int best = -1;
-    bool covered = false;
-    for (const int id : corners_of(triangle)) {
-      if (!moved_place(id)) continue;
-      if (site_count_[index(id)] == kChosen) covered = true;
-      if (best < 0 || site_count_[index(id)] > site_count_[index(best)]) best = id;
-    }
-    if (covered) continue;
-    site_count_[index(best)] = kChosen;
-    cover_.push_back(best);
-  }
-  for (const int triangle : triangles) {
-    for (const int id : corners_of(triangle)) {
-      if (id >= 0) site_count_[index(id)] = 0;
-    }
-  }
+  detail::choose_cover(
+      triangles, [&](int triangle) { return corners_of(triangle); },
+      [&](int id) { return moved_place(id); }, site_count_, cover_);
 }
 
 // ---- Putting in --------------------------------------------------------------------------------

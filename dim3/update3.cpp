@@ -1,5 +1,7 @@
 #include <lagrain/triangulation3.hpp>
 
+#include "cover.hpp"
+
 #include <algorithm>
 
 namespace lagrain {
@@ -523,37 +525,12 @@ bool Triangulation<3>::extract_inverted() {
   }
 }
 
-/// A small set of moved sites with at least one in each of the cells: where there is a choice, the
-/// site that occurs most often, as one that strayed far inverts several.
+/// Fills cover_ with moved sites, at least one in each of the cells.
 /// @return false if one has none: an infinite cell that the point in the middle has left
 bool Triangulation<3>::choose_cover(std::span<const int> cells) {
-  constexpr int kChosen = -1;
-  cover_.clear();
-  bool complete = true;
-  for (const int cell : cells) {
-    for (const int id : topology_.vertices(cell)) {
-      if (moved_place(id)) ++site_note_[index(id)];
-    }
-  }
-  for (const int cell : cells) {
-    int best = -1;
-    bool covered = false;
-    for (const int id : topology_.vertices(cell)) {
-      if (!moved_place(id)) continue;
-      if (site_note_[index(id)] == kChosen) covered = true;
-      if (best < 0 || site_note_[index(id)] > site_note_[index(best)]) best = id;
-    }
-    complete = complete && best >= 0;
-    if (covered || best < 0) continue;
-    site_note_[index(best)] = kChosen;
-    cover_.push_back(best);
-  }
-  for (const int cell : cells) {
-    for (const int id : topology_.vertices(cell)) {
-      if (id >= 0) site_note_[index(id)] = 0;
-    }
-  }
-  return complete;
+  return detail::choose_cover(
+      cells, [&](int cell) { return topology_.vertices(cell); },
+      [&](int id) { return moved_place(id); }, site_note_, cover_);
 }
 
 /// Tries every hidden site. One pass is enough: an insertion only hides others.
