@@ -65,7 +65,7 @@ FigureResult draw_figure7(const FigureOptions& options) {
                    .size = style::kTitle,
                    .along = Along::top});
     const double difference = still.final_density() - kRows[k].paper;
-    const auto [low, high] = std::minmax(still.final_density(), smooth.final_density());
+    const auto [low, high] = std::minmax({still.final_density(), smooth.final_density()});
     const bool explained = low - 0.005 < kRows[k].paper && kRows[k].paper < high + 0.005;
     result.comparisons.push_back(
         {std::string("density of ") + kRows[k].numbers +
