@@ -131,7 +131,7 @@ void Triangulation<3>::insert_all(std::span<const int> order, const Site3* away)
 }
 
 /// Completes a simplex of dimension_ + 1 sites by auxiliary ones, each displaced from the first
-/// along an axis. Every axis along which the sites so far extend least stays out of their span.
+/// along an axis.
 void Triangulation<3>::place_auxiliaries(Quad& simplex, const Site3* away) {
   const auto at = [&](int k) -> Site3& { return sites_[index(simplex[index(k)])]; };
   const auto spans_space = [&] { return orientation(at(0), at(1), at(2), at(3)) != 0; };
@@ -140,8 +140,8 @@ void Triangulation<3>::place_auxiliaries(Quad& simplex, const Site3* away) {
     size = std::max({size, std::abs(at(k).x), std::abs(at(k).y), std::abs(at(k).z)});
   }
   const int missing = 3 - dimension_;
-  // One of the three choices of axes spans space: exactly, as no digit of a displacement by `size`
-  // is lost.
+  // One of the three choices of axes leads out of the span of the sites. The displacement is longer
+  // than any coordinate, so that rounding does not swallow it.
   for (int skipped = 0; skipped < 3; ++skipped) {
     int axis = missing == 1 ? skipped : missing == 2 ? (skipped + 1) % 3 : 0;
     for (int k = dimension_ + 1; k <= 3; ++k, axis = (axis + 1) % 3) {

@@ -30,10 +30,6 @@ constexpr std::array<Row, 3> kRows{{{"packing_1484.toml", 1484, "0.04", 0.52},
                                     {"packing_6944.toml", 6944, "0.02", 0.54}}};
 constexpr std::array<double, 6> kFrictions{0, 0.1, 0.2, 0.3, 0.5, 0.8};
 
-std::string digits(double value) {
-  return rounded(value, 3);
-}
-
 /// Density by the piston and within, over friction.
 Plot friction_plot(const std::vector<double>& friction, const std::vector<Packing>& packings) {
   Series piston = series_style(0), bulk = series_style(1), paper = series_style(2);
@@ -92,8 +88,8 @@ FigureResult draw_figure6(const FigureOptions& options) {
     const double x = static_cast<double>(k) * (third + gap);
     const std::string count = std::to_string(p.radius.size());
     add_packing(list, {x, top}, third, p, ColourBy::height, options.quick,
-                {"$n$ = " + count + ", $r$ = " + shortest(p.radius[0]) +
-                 " m: $d$ = " + digits(p.final_density())});
+                "$n$ = " + count + ", $r$ = " + shortest(p.radius[0]) +
+                    " m: $d$ = " + digits(p.final_density()));
     list.add(Label{.text = std::string("(") + "abc"[k] + ")",
                    .at = {x, list.height - 4},
                    .size = style::kTitle,
@@ -111,8 +107,9 @@ FigureResult draw_figure6(const FigureOptions& options) {
              shortest(kFrictions.back()) + " in place of " + shortest(base.law.friction) +
              " it is " + digits(rough) + " (" + (rough < kRows[k].paper ? "" : "+") +
              rounded(rough - kRows[k].paper, 2) + ")" +
-             (std::abs(rough - kRows[k].paper) < 0.01 ? ": friction accounts for the difference"
-                                                      : "")});
+             (std::abs(rough - kRows[k].paper) < 0.01
+                  ? ": a rougher material accounts for the difference"
+                  : "")});
   }
 
   const auto place = [&](std::size_t k, const char* letter) {

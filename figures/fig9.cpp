@@ -23,6 +23,7 @@ namespace lagrain::figures {
 namespace {
 
 constexpr double kRadius = 0.04;         // of the spheres of the closest packing [m]
+constexpr double kDuration = 0.1;        // of its run [s]
 constexpr double kRandomClose = 0.6366;  // Scott & Kilgour, J. Phys. D 2 (1969) 863
 
 /// Square layers, each in the hollows of the one below: the (100) planes of face-centred cubic.
@@ -30,7 +31,7 @@ constexpr double kRandomClose = 0.6366;  // Scott & Kilgour, J. Phys. D 2 (1969)
 Scene<3> closest_packing(int across, int layers) {
   Scene<3> scene;
   scene.title = "Face-centred cubic packing under its own weight";
-  scene.duration = 0.1;
+  scene.duration = kDuration;
   scene.time_step.fraction_of_contact = 1.0 / 20;
   scene.gravity = {0, 0, -9.81};
   scene.friction = FrictionModel::none;
@@ -249,7 +250,7 @@ FigureResult draw_figure9(const FigureOptions& options) {
   };
   letter(0, list.height - 2, "(a)");
   add_packing(list, {16, list.height - 12 - picture}, picture, closest.packing, ColourBy::height,
-              options.quick, {"face-centred cubic, at rest: " + rounded(closest.packing.bulk, 4)});
+              options.quick, "face-centred cubic, at rest: " + rounded(closest.packing.bulk, 4));
   const double x = picture + 32 + gap;
   letter(x, list.height - 2, "(b)");
   add_plot(list, {{x + 14, list.height - 12 - picture - 10}, {style::kPage, list.height - 8}},
@@ -266,7 +267,7 @@ FigureResult draw_figure9(const FigureOptions& options) {
   FigureResult result;
   result.caption =
       "(a) The closest packing of equal spheres, " + std::to_string(closest.packing.radius.size()) +
-      " of them in square layers, after " + rounded(0.1, 2) +
+      " of them in square layers, after " + rounded(kDuration, 2) +
       " s under its own weight. (b) Edges of the triangulation per site. (c) Densities of the "
       "packings of figures 6 and 7; random close packing after Scott & Kilgour, J. Phys. D 2 "
       "(1969) 863.";

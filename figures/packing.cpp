@@ -18,6 +18,7 @@
 #include <map>
 #include <mutex>
 #include <thread>
+#include <tuple>
 #include <utility>
 
 namespace lagrain::figures {
@@ -73,7 +74,6 @@ class Runner {
     packing.box = inside_of(run->walls());
     std::tie(packing.bulk, packing.bulk_count) =
         bulk_density(packing.position, packing.radius, packing.box);
-    packing.contacts = run->contacts();
     packing.statistics = run->statistics();
     packing.audited = run->audit().contacts();
     packing.missed = run->audit().missed();
@@ -231,7 +231,7 @@ Series density_series(const Packing& packing, int index, double from) {
 }
 
 void add_packing(DisplayList& list, const Vec<2>& low, double width, const Packing& packing,
-                 ColourBy by, bool quick, const std::vector<std::string>& text) {
+                 ColourBy by, bool quick, const std::string& text) {
   Scene3 scene;
   const Box3 whole{packing.at_first.min(), packing.at_first.max()};
   const double smallest = packing.radius.minCoeff();
@@ -259,20 +259,20 @@ void add_packing(DisplayList& list, const Vec<2>& low, double width, const Packi
   scene.camera = look(whole, {0.5, 0.8, -0.4}, {0, 0, 1}, 1, 0.4);
   scene.subframes = quick ? kPreviewSubframes : kPrintSubframes;
   list.add(paint_scene3(scene, Box{low, low + Vec<2>(width, width)}));
-  double y = low[1] - 2;
-  for (const std::string& line : text) {
-    list.add(Label{.text = line,
-                   .at = {low[0] + width / 2, y},
-                   .size = style::kText,
-                   .across = Across::centre,
-                   .along = Along::top});
-    y -= 11;
-  }
+  list.add(Label{.text = text,
+                 .at = {low[0] + width / 2, low[1] - 2},
+                 .size = style::kText,
+                 .across = Across::centre,
+                 .along = Along::top});
+}
+
+std::string digits(double density) {
+  return rounded(density, 3);
 }
 
 std::string bulk_text(const Packing& packing) {
   if (packing.bulk_count == 0) return "no cell away from the walls";
-  return rounded(packing.bulk, 3) + " in the " + std::to_string(packing.bulk_count) +
+  return digits(packing.bulk) + " in the " + std::to_string(packing.bulk_count) +
          " cells away from the walls";
 }
 
@@ -299,8 +299,9 @@ std::vector<Fact> packing_facts(const std::vector<Packing>& packings) {
                        rounded(1e9 * seconds / static_cast<double>(grain_steps)) +
                        " ns per grain and step, audit included; " +
                        rounded(100 * share / seconds, 2) + " % of it for the neighbourhood"},
-          {"contacts audited", std::to_string(audited)},
-          {"contacts missed", std::to_string(missed)},
+          {"contacts audited, missed", audited > 0
+                                           ? std::to_string(audited) + ", " + std::to_string(missed)
+                                           : "none audited (quick)"},
           {"largest overlap at any sample", rounded(100 * overlap, 2) + " % of the smaller radius"},
           {"largest energy residual", rounded(100 * residual, 2) + " % of what was dissipated"},
           {"triangulation updates", std::to_string(cost.updates) + ", " +

@@ -46,10 +46,9 @@ struct Packing {
   double bulk = 0;               ///< density of the Laguerre cells away from all walls [-]
   int bulk_count = 0;            ///< cells in that
   double edges_per_site = 0;
-  double seconds = 0;                      ///< wall clock
-  std::vector<ContactRecord<3>> contacts;  ///< at the end
-  ContactStatistics statistics;            ///< at the end
-  double largest_overlap = 0;              ///< at any sample, of the smaller radius [-]
+  double seconds = 0;            ///< wall clock
+  ContactStatistics statistics;  ///< at the end
+  double largest_overlap = 0;    ///< at any sample, of the smaller radius [-]
   std::int64_t audited = 0, missed = 0;
   TriangulationCost cost;
   std::int64_t steps = 0;
@@ -83,6 +82,9 @@ std::pair<double, int> bulk_density(const Columns<3>& position, const Eigen::Vec
 /// Positions and radii of a packing at its end as CSV.
 std::string packing_csv(const Packing& packing);
 
+/// A density as it is printed.
+std::string digits(double density);
+
 /// The density away from the walls and of how many cells it is, in words.
 std::string bulk_text(const Packing& packing);
 
@@ -93,11 +95,11 @@ Series density_series(const Packing& packing, int index, double from);
 enum class ColourBy { height, radius };
 
 /// Adds a picture of a packing in its box, the piston a pane of glass if it has come down, and
-/// lines of text below.
+/// a line of text below.
 /// @param low  lower left corner on the page [pt]
 /// @param width of the picture, which is a square [pt]
 void add_packing(DisplayList& list, const Vec<2>& low, double width, const Packing& packing,
-                 ColourBy by, bool quick, const std::vector<std::string>& text);
+                 ColourBy by, bool quick, const std::string& text);
 
 /// Facts for the gallery: what the runs of a figure cost and what was checked.
 std::vector<Fact> packing_facts(const std::vector<Packing>& packings);

@@ -24,11 +24,11 @@ std::mutex& font_mutex() {
 }
 
 struct Fonts {
-  FT_Library library = nullptr;
+  FT_Library freetype = nullptr;
   std::array<FT_Face, 2> ours{}, cairos{};
 
   Fonts() {
-    if (FT_Init_FreeType(&library) != 0) throw SceneError("FreeType could not be started");
+    if (FT_Init_FreeType(&freetype) != 0) throw SceneError("FreeType could not be started");
     for (FT_Face& face : ours) face = open(&face == &ours[0]);
     for (FT_Face& face : cairos) face = open(&face == &cairos[0]);
   }
@@ -36,7 +36,7 @@ struct Fonts {
   FT_Face open(bool text) const {
     const char* path = text ? LAGRAIN_FONT_TEXT : LAGRAIN_FONT_MATH;
     FT_Face face = nullptr;
-    if (FT_New_Face(library, path, 0, &face) != 0) {
+    if (FT_New_Face(freetype, path, 0, &face) != 0) {
       throw SceneError(std::string(path) +
                        ": the font cannot be read; it comes with Debian's package fonts-lmodern");
     }
@@ -441,7 +441,7 @@ Mask rasterise(const Label& label, double scale) {
     bitmap.buffer = one.data();
     bitmap.num_grays = 256;
     bitmap.pixel_mode = FT_PIXEL_MODE_GRAY;
-    if (FT_Outline_Get_Bitmap(fonts().library, &outline, &bitmap) != 0) {
+    if (FT_Outline_Get_Bitmap(fonts().freetype, &outline, &bitmap) != 0) {
       throw ContractError("label \"" + label.text + "\": FreeType cannot draw it at this size");
     }
     for (std::size_t k = 0; k < size; ++k) {
