@@ -17,15 +17,18 @@ namespace lagrain::detail {
 struct Syrup {
   static constexpr const char* kName = "syrup";
   static constexpr bool kConservativeOnly = false;
+  static constexpr bool kRemembersAcceleration = false;
+  static constexpr int kEvaluations = 1;
   static constexpr double kKept = 0.9;  ///< of the velocity, in a step
+  static constexpr double time_of(int) { return 1; }
 
-  template <class G, class Forces>
-  void step(G& g, double dt, Forces& forces) {
-    g.velocity *= kKept;
-    kick(g, dt);
-    drift(g, dt);
-    forces(dt);
+  template <class V>
+  static void advance(int, V& x, V& v, const V& a, V&, double dt) {
+    v = kKept * v + dt * a;
+    x += dt * v;
   }
+  template <class V>
+  static void finish(V&, V&, const V&, const V&, double) {}
 };
 
 /// Moves the grains that are not pinned until none overlaps another or a wall; walls do not move.

@@ -2,9 +2,11 @@
 
 #include "simulation_run.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <thread>
 
 namespace lagrain {
 
@@ -65,6 +67,12 @@ std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene) {
   return make_run(scene, scene.neighbourhood == NeighbourhoodModel::all_pairs
                              ? AnyNeighbourhood<Dim>(AllPairs<Dim>{})
                              : AnyNeighbourhood<Dim>(CellGrid<Dim>{}));
+}
+
+int threads_that_pay(int grains) {
+  constexpr int kWorthWhile = 10000;
+  if (grains < kWorthWhile) return 1;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 namespace {

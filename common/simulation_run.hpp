@@ -11,6 +11,7 @@
 #include <lagrain/simulation.hpp>
 #include <lagrain/viscous_friction.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace lagrain::detail {
@@ -73,8 +74,8 @@ class SimulationRun final : public Run<Dim> {
   const std::vector<Wall<Dim>>& walls() const override { return sim_.walls(); }
   ContactStatistics statistics() const override { return contact_statistics(sim_); }
   Ledger ledger() const override { return energy_ledger(sim_); }
-  const std::vector<Pair>& near_pairs() const override { return sim_.near().grains.pairs; }
-  std::int64_t refreshes() const override { return sim_.near().refreshes(); }
+  std::vector<Pair> near_pairs() const override { return sim_.near_pairs(); }
+  std::int64_t refreshes() const override { return sim_.refreshes(); }
   const AnyNeighbourhood<Dim>& neighbourhood() const override { return sim_.neighbourhood(); }
   double neighbourhood_seconds() const override { return sim_.neighbourhood_seconds(); }
 
@@ -82,14 +83,28 @@ class SimulationRun final : public Run<Dim> {
     std::vector<ContactRecord<Dim>> list;
     sim_.for_each_contact(
         [&](Pair pair, const Touch<Dim>& touch, const Response<Dim>& response, const auto&) {
-          list.push_back({pair.i, pair.j, -1, touch.overlap, touch.normal, response.force});
+          ContactRecord<Dim> record{pair.i, pair.j, -1, touch.overlap, touch.normal, response.force};
+          if (record.i > record.j) {
+            std::swap(record.i, record.j);
+            record.normal = -record.normal;
+            record.force = -record.force;
+          }
+          list.push_back(record);
         });
+    const auto grains = static_cast<std::ptrdiff_t>(list.size());
     sim_.for_each_wall_contact(
         [&](WallPair pair, const Touch<Dim>& touch, const Response<Dim>& response, const auto&) {
           list.push_back({pair.i, -1, pair.wall, touch.overlap, touch.normal, response.force});
         });
+    std::sort(list.begin(), list.begin() + grains,
+              [](const auto& a, const auto& b) { return std::pair(a.i, a.j) < std::pair(b.i, b.j); });
+    std::sort(list.begin() + grains, list.end(), [](const auto& a, const auto& b) {
+      return std::pair(a.wall, a.i) < std::pair(b.wall, b.i);
+    });
     return list;
   }
+
+  void use_threads(int threads) override { sim_.use_threads(threads); }
 
   ModelSize size() const override {
     ModelSize s;
@@ -102,9 +117,7 @@ class SimulationRun final : public Run<Dim> {
 
  private:
   void advance() override { sim_.step(); }
-  bool near_is_valid() const override {
-    return !sim_.near().expired(sim_.grains().position, sim_.walls(), sim_.time());
-  }
+  bool near_is_valid() const override { return sim_.near_list_holds(); }
 
   TimeScales scales_;
   Sim sim_;
@@ -149,7 +162,7 @@ std::unique_ptr<Run<Dim>> make_run_with(const Scene<Dim>& scene, Placement<Dim> 
       if constexpr (!Law::needs.spin) return finish(ForestRuth{});
       break;
     case IntegratorModel::velocity_verlet:
-      return finish(VelocityVerlet<Dim>{});
+      return finish(VelocityVerlet{});
   }
   throw scene.error("integrator",
                     "\"fourth order\" is for forces without loss: it needs friction = \"none\"");

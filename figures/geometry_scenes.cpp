@@ -131,14 +131,14 @@ Settled settle(int count, double smallest, double largest, double width, std::ui
   const Law law{.normal = LinearSpring::with_restitution(result.stiffness, result.restitution),
                 .friction = result.friction};
   result.time_step = time_step_for(grains, result.stiffness);
-  Simulation<2, Law, VelocityVerlet<2>, TriangulationNeighbourhood<2>> simulation(
+  Simulation<2, Law, VelocityVerlet, TriangulationNeighbourhood<2>> simulation(
       make_grains<2, Law::needs>(grains), LawTable<Law>(law), open_box(width),
       {.gravity = {0, -9.81}, .time_step = result.time_step}, TriangulationNeighbourhood<2>());
   ContactAudit<2> audit;
   while (simulation.time() < result.time) {
     simulation.step();
     audit.check(simulation.grains().position, simulation.grains().radius,
-                simulation.near().grains.pairs);
+                simulation.near_pairs());
   }
 
   result.discs = {simulation.grains().position, simulation.grains().radius};
@@ -186,7 +186,7 @@ Flight fly(int count, std::uint64_t seed, double duration, double interval) {
   const double largest_step = time_step_for(grains, kStiffness);
   const double time_step = kLeastInterval / std::ceil(kLeastInterval / largest_step);
   const int steps = static_cast<int>(std::lround(interval / time_step));
-  Simulation<2, LinearSpring, VelocityVerlet<2>, TriangulationNeighbourhood<2>> simulation(
+  Simulation<2, LinearSpring, VelocityVerlet, TriangulationNeighbourhood<2>> simulation(
       make_grains<2, LinearSpring::needs>(grains), LawTable<LinearSpring>(LinearSpring{kStiffness}),
       std::move(walls), {.time_step = time_step}, TriangulationNeighbourhood<2>());
 

@@ -83,12 +83,13 @@ struct RunArguments {
   std::string scene;
   std::string out;
   bool explain = false;
+  int threads = 0;
 };
 
 template <int Dim>
 int run_scene(const RunArguments& arguments) {
   const Scene<Dim> scene = read_scene<Dim>(arguments.scene);
-  const auto run = make_scene_run(scene);
+  const auto run = make_scene_run(scene, arguments.threads);
   if (arguments.explain) {
     std::cout << explain(*run);
     return 0;
@@ -168,6 +169,8 @@ int main(int argc, char** argv) {
   CLI::App* run_app = app.add_subcommand("run", "Run a scene and write a folder");
   run_app->add_option("scene", run.scene, "scene file (TOML)")->required();
   run_app->add_option("--out", run.out, "folder to write (default: runs/NAME of the scene)");
+  run_app->add_option("--threads", run.threads, "threads that share a step (default: as many as pay)")
+      ->check(CLI::Range(1, 1024));
   run_app->add_flag("--explain", run.explain, "say what the scene is made of; run nothing");
 
   FigureArguments figure;

@@ -9,8 +9,9 @@
 namespace lagrain {
 
 /// Builds the simulation that a scene names; see make_run.
+/// @param threads  that share its steps; 0: as many as pay
 /// @throws SceneError
 template <int Dim>
-std::unique_ptr<Run<Dim>> make_scene_run(const Scene<Dim>& scene);
+std::unique_ptr<Run<Dim>> make_scene_run(const Scene<Dim>& scene, int threads = 0);
 
 }  // namespace lagrain

@@ -12,10 +12,16 @@ namespace lagrain {
 
 /// History of a contact without history.
 struct NoMemory {
+  static constexpr int kReals = 0;
+  NoMemory seen_from_partner() const { return {}; }
   bool operator==(const NoMemory&) const = default;
 };
 
-/// A law of contact in Dim dimensions.
+/// A law of contact in Dim dimensions, written over a number type: double for one contact, Lanes for
+/// several at once.
+///
+/// What a contact remembers is `Memory<Dim, Real>`: kReals numbers, reached by [], zero at first,
+/// and what the partner's side of the contact remembers by `seen_from_partner`.
 ///
 /// `respond` advances the memory by the time step and returns the force; called again with time
 /// step 0 it returns the same force and changes nothing. From `contact_time`, the duration of a
@@ -26,6 +32,8 @@ concept ContactLaw = requires(const L law, const Touch<Dim>& touch,
                               typename L::template Memory<Dim>& memory,
                               const typename L::template Memory<Dim>& past, double x) {
   { L::needs } -> std::convertible_to<Needs>;
+  { L::template Memory<Dim>::kReals } -> std::convertible_to<int>;
+  { past.seen_from_partner() } -> std::same_as<typename L::template Memory<Dim>>;
   { law.respond(touch, memory, x) } -> std::same_as<Response<Dim>>;    // time step [s]
   { law.elastic_energy(touch, past) } -> std::convertible_to<double>;  // [J]
   // effective mass [kg], effective radius [m]

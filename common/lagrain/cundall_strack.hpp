@@ -27,9 +27,13 @@ struct CundallStrack {
   static constexpr Needs needs{.spin = true, .memory = true};
 
   /// Stretch of the tangential spring [m], in the contact plane.
-  template <int Dim>
+  template <int Dim, class Real = double>
   struct Memory {
-    Vec<Dim> stretch = Vec<Dim>::Zero();
+    static constexpr int kReals = Dim;
+    Vec<Dim, Real> stretch = Vec<Dim, Real>::Zero();
+    Real& operator[](int k) { return stretch[k]; }
+    const Real& operator[](int k) const { return stretch[k]; }
+    Memory seen_from_partner() const { return {-stretch}; }
     bool operator==(const Memory&) const = default;
   };
 
@@ -38,22 +42,26 @@ struct CundallStrack {
   double stiffness_ratio = 2.0 / 7.0;   ///< kt / kn [-]
   double tangential_damping_ratio = 0;  ///< zeta_t [-]
 
-  template <int Dim>
-  Response<Dim> respond(const Touch<Dim>& touch, Memory<Dim>& memory, double time_step) const {
-    Response<Dim> response;
-    const double fn = normal.normal_force(touch);
+  template <int Dim, class Real>
+  Response<Dim, Real> respond(const Touch<Dim, Real>& touch, Memory<Dim, Real>& memory,
+                              double time_step) const {
+    using std::sqrt;
+    Response<Dim, Real> response;
+    const Real fn = normal.normal_force(touch);
     response.dashpot_loss = (fn - normal.elastic_force(touch)) * touch.closing * time_step;
 
-    const double kt = stiffness_ratio * normal.stiffness_at(touch);
-    const double gt = 2 * tangential_damping_ratio * std::sqrt(kt * touch.effective_mass);
-    Vec<Dim> xi = turned_with<Dim>(memory.stretch, touch, time_step);
-    const double stored = 0.5 * kt * xi.squaredNorm();
-    xi = cut<Dim>(xi + time_step * touch.slip, friction * fn / kt);
-    const Vec<Dim> ft = cut<Dim>(-(kt * xi + gt * touch.slip), friction * fn);
+    // One number for a linear spring, one per contact for Hertz's; so are its root and inverse.
+    const auto kt = stiffness_ratio * normal.stiffness_at(touch);
+    const auto compliance = 1 / kt;
+    const Real gt = 2 * tangential_damping_ratio * sqrt(kt) * sqrt(touch.effective_mass);
+    Vec<Dim, Real> xi = turned_with<Dim, Real>(memory.stretch, touch, time_step);
+    const Real stored = 0.5 * kt * squared(xi);
+    xi = cut<Dim, Real>(xi + time_step * touch.slip, friction * fn * compliance);
+    const Vec<Dim, Real> ft = cut<Dim, Real>(-(kt * xi + gt * touch.slip), friction * fn);
     memory.stretch = xi;
     response.force = fn * touch.normal + ft;
     response.friction_loss =
-        -ft.dot(touch.slip) * time_step - (0.5 * kt * xi.squaredNorm() - stored);
+        -dot(ft, touch.slip) * time_step - (0.5 * kt * squared(xi) - stored);
     return response;
   }
 
@@ -77,23 +85,26 @@ struct CundallStrack {
 
  private:
   /// v, shortened to at most `length`.
-  template <int Dim>
-  static Vec<Dim> cut(const Vec<Dim>& v, double length) {
-    const double squared = v.squaredNorm();
-    return squared > length * length ? Vec<Dim>(length / std::sqrt(squared) * v) : v;
+  template <int Dim, class Real>
+  static Vec<Dim, Real> cut(const Vec<Dim, Real>& v, const Real& length) {
+    using std::sqrt;
+    const Real length_squared = squared(v);
+    const auto longer = length_squared > length * length;
+    if (!any(longer)) return v;
+    return select(longer, Real(length / sqrt(length_squared)), Real(1)) * v;
   }
 
   /// The stretch follows the contact as it turns: about the normal by the twist of the step, and
   /// with the normal, whose part is dropped. The length is kept.
-  template <int Dim>
-  static Vec<Dim> turned_with(const Vec<Dim>& stretch, const Touch<Dim>& touch, double time_step) {
-    const double before = stretch.squaredNorm();
-    if (before == 0) return stretch;
-    const Vec<Dim> flat = stretch - stretch.dot(touch.normal) * touch.normal +
-                          cross(SpinVec<Dim>(time_step * touch.twist), stretch);
-    const double after = flat.squaredNorm();
-    if (after == 0) return flat;
-    return std::sqrt(before / after) * flat;
+  template <int Dim, class Real>
+  static Vec<Dim, Real> turned_with(const Vec<Dim, Real>& stretch, const Touch<Dim, Real>& touch,
+                                    double time_step) {
+    using std::sqrt;
+    const Vec<Dim, Real> flat =
+        stretch - dot(stretch, touch.normal) * touch.normal +
+        cross<Real>(SpinVec<Dim, Real>(time_step * touch.twist), stretch);
+    const Real before = squared(stretch), after = squared(flat);
+    return select(after > Real(0), Real(sqrt(before / after)), Real(1)) * flat;
   }
 };
 

@@ -26,7 +26,7 @@ struct SpinState {
 
 struct NoSpin {};
 
-/// N discs (Dim = 2) or spheres (Dim = 3). A frictionless `Grains` has no member `omega`: it is
+/// N discs (Dim = 2) or spheres (Dim = 3), as they are given to a simulation and as it shows them. A frictionless `Grains` has no member `omega`: it is
 /// absent, not zero.
 ///
 /// A pinned grain has inverse mass and inverse inertia 0: forces on it are measured, it stays.
@@ -121,12 +121,6 @@ Grains<Dim, needs> make_grains(const std::vector<Grain<Dim>>& list) {
       grains.kind.push_back(static_cast<std::uint8_t>(grain.kind));
   }
   return grains;
-}
-
-/// Bytes of state that one grain costs in this model; a table of several kinds adds one byte.
-template <int Dim, Needs needs>
-constexpr std::size_t bytes_per_grain() {
-  return sizeof(double) * (3 * Dim + 3 + (needs.spin ? 2 * kSpinDim<Dim> + 1 : 0));
 }
 
 }  // namespace lagrain

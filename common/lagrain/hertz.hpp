@@ -5,7 +5,6 @@
 #include <lagrain/contact_law.hpp>
 #include <lagrain/restitution.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -26,7 +25,7 @@ namespace lagrain {
 /// stiffness of its own, so in the plane this is a model, not elasticity.
 struct Hertz {
   static constexpr Needs needs{};
-  template <int Dim>
+  template <int Dim, class Real = double>
   using Memory = NoMemory;
 
   double modulus = 0;        ///< effective Young's modulus E* [Pa]; (1 - nu^2)/E adds over the pair
@@ -38,29 +37,33 @@ struct Hertz {
   }
 
   /// K [N/m^(3/2)] for an effective radius [m].
-  double coefficient(double effective_radius) const {
-    return 4.0 / 3.0 * modulus * std::sqrt(effective_radius);
+  template <class Real>
+  Real coefficient(const Real& effective_radius) const {
+    using std::sqrt;
+    return 4.0 / 3.0 * modulus * sqrt(effective_radius);
   }
 
-  template <int Dim>
-  double stiffness_at(const Touch<Dim>& touch) const {
-    return 1.5 * coefficient(touch.effective_radius) * std::sqrt(touch.overlap);
+  template <int Dim, class Real>
+  Real stiffness_at(const Touch<Dim, Real>& touch) const {
+    using std::sqrt;
+    return 1.5 * coefficient(touch.effective_radius) * sqrt(touch.overlap);
   }
-  template <int Dim>
-  double elastic_force(const Touch<Dim>& touch) const {
-    return coefficient(touch.effective_radius) * touch.overlap * std::sqrt(touch.overlap);
+  template <int Dim, class Real>
+  Real elastic_force(const Touch<Dim, Real>& touch) const {
+    using std::sqrt;
+    return coefficient(touch.effective_radius) * touch.overlap * sqrt(touch.overlap);
   }
-  template <int Dim>
-  double normal_force(const Touch<Dim>& touch) const {
-    const double k = coefficient(touch.effective_radius);
-    const double root = std::sqrt(touch.overlap);
-    const double damping =
-        std::sqrt(5.0) * damping_ratio * std::sqrt(touch.effective_mass * k * root);
-    return std::max(0.0, k * touch.overlap * root + damping * touch.closing);
+  template <int Dim, class Real>
+  Real normal_force(const Touch<Dim, Real>& touch) const {
+    using std::sqrt;
+    const Real k = coefficient(touch.effective_radius);
+    const Real root = sqrt(touch.overlap);
+    const Real damping = std::sqrt(5.0) * damping_ratio * sqrt(touch.effective_mass * k * root);
+    return positive_part(Real(k * touch.overlap * root + damping * touch.closing));
   }
-  template <int Dim>
-  Response<Dim> respond(const Touch<Dim>& touch, NoMemory&, double time_step) const {
-    const double f = normal_force(touch);
+  template <int Dim, class Real>
+  Response<Dim, Real> respond(const Touch<Dim, Real>& touch, NoMemory&, double time_step) const {
+    const Real f = normal_force(touch);
     return {f * touch.normal, (f - elastic_force(touch)) * touch.closing * time_step, 0};
   }
   template <int Dim>

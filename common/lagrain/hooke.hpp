@@ -5,7 +5,6 @@
 #include <lagrain/contact_law.hpp>
 #include <lagrain/restitution.hpp>
 
-#include <algorithm>
 #include <cmath>
 
 namespace lagrain {
@@ -22,7 +21,7 @@ namespace lagrain {
 /// (2007) 465.
 struct LinearSpring {
   static constexpr Needs needs{};
-  template <int Dim>
+  template <int Dim, class Real = double>
   using Memory = NoMemory;
 
   double stiffness = 0;      ///< k [N/m]
@@ -33,22 +32,23 @@ struct LinearSpring {
     return {stiffness, damping_ratio_for(restitution)};
   }
 
-  template <int Dim>
-  double stiffness_at(const Touch<Dim>&) const {
+  template <int Dim, class Real>
+  double stiffness_at(const Touch<Dim, Real>&) const {
     return stiffness;
   }
-  template <int Dim>
-  double elastic_force(const Touch<Dim>& touch) const {
+  template <int Dim, class Real>
+  Real elastic_force(const Touch<Dim, Real>& touch) const {
     return stiffness * touch.overlap;
   }
-  template <int Dim>
-  double normal_force(const Touch<Dim>& touch) const {
-    const double damping = 2 * damping_ratio * std::sqrt(stiffness * touch.effective_mass);
-    return std::max(0.0, elastic_force(touch) + damping * touch.closing);
+  template <int Dim, class Real>
+  Real normal_force(const Touch<Dim, Real>& touch) const {
+    using std::sqrt;
+    const Real damping = 2 * damping_ratio * std::sqrt(stiffness) * sqrt(touch.effective_mass);
+    return positive_part(Real(elastic_force(touch) + damping * touch.closing));
   }
-  template <int Dim>
-  Response<Dim> respond(const Touch<Dim>& touch, NoMemory&, double time_step) const {
-    const double f = normal_force(touch);
+  template <int Dim, class Real>
+  Response<Dim, Real> respond(const Touch<Dim, Real>& touch, NoMemory&, double time_step) const {
+    const Real f = normal_force(touch);
     return {f * touch.normal, (f - elastic_force(touch)) * touch.closing * time_step, 0};
   }
   template <int Dim>

@@ -1,97 +1,69 @@
 #pragma once
 /// @file
-/// Integrators of the motion. Each steps the grains by dt [s] and calls `forces(t)` [s from the
-/// start of the step] whenever it needs the forces at the places and velocities then in `grains`.
-
-#include <lagrain/grains.hpp>
+/// Integrators of the motion, written for one coordinate or vector at a time.
+///
+/// A step evaluates the forces kEvaluations times. Before evaluation k, `advance` brings place x and
+/// velocity v there; `finish` completes the step once the last forces are known. Both get the
+/// acceleration a by the forces evaluated last, and `old`, which advance may set and finish read.
+/// The simulation joins `finish` with the `advance` that follows, so that a step passes over the
+/// grains once. Spins are velocities whose angle x nobody asks for.
 
 #include <array>
 #include <concepts>
 
 namespace lagrain {
 
-template <class I, class G, class Forces>
-concept Integrator = requires(I integrator, G& grains, double dt, Forces& forces) {
-  integrator.step(grains, dt, forces);
+template <class I>
+concept Integrator = requires(double& x, double a, double dt) {
   { I::kName } -> std::convertible_to<const char*>;
   { I::kConservativeOnly } -> std::convertible_to<bool>;
+  { I::kRemembersAcceleration } -> std::convertible_to<bool>;
+  { I::kEvaluations } -> std::convertible_to<int>;
+  { I::time_of(0) } -> std::convertible_to<double>;  // of evaluation k, in steps
+  I::template advance<double>(0, x, x, a, x, dt);
+  I::template finish<double>(x, x, a, a, dt);
 };
-
-namespace detail {
-
-/// velocity += dt force / mass, and likewise for the spin.
-template <class G>
-void kick(G& g, double dt) {
-  for (Eigen::Index i = 0; i < g.velocity.cols(); ++i) {
-    g.velocity.col(i) += (dt * g.inverse_mass[i]) * g.force.col(i);
-  }
-  if constexpr (requires { g.omega; }) {
-    for (Eigen::Index i = 0; i < g.omega.cols(); ++i) {
-      g.omega.col(i) += (dt * g.inverse_inertia[i]) * g.torque.col(i);
-    }
-  }
-}
-
-template <class G>
-void drift(G& g, double dt) {
-  g.position += dt * g.velocity;
-}
-
-}  // namespace detail
 
 /// Velocity from the old force, then place from the new velocity. First order at the grid points,
 /// symplectic, one force evaluation.
 struct SymplecticEuler {
   static constexpr const char* kName = "symplectic Euler";
   static constexpr bool kConservativeOnly = false;
+  static constexpr bool kRemembersAcceleration = false;
+  static constexpr int kEvaluations = 1;
+  static constexpr double time_of(int) { return 1; }
 
-  template <class G, class Forces>
-  void step(G& g, double dt, Forces& forces) {
-    detail::kick(g, dt);
-    detail::drift(g, dt);
-    forces(dt);
+  template <class V>
+  static void advance(int, V& x, V& v, const V& a, V&, double dt) {
+    v += dt * a;
+    x += dt * v;
   }
+  template <class V>
+  static void finish(V&, V&, const V&, const V&, double) {}
 };
 
 /// Second order, symplectic without damping, one force evaluation (Swope et al., J. Chem. Phys. 76
 /// (1982) 637). A dashpot needs the velocity at the new time before the new force is known: the
 /// force sees the prediction v + dt a_old, which keeps second order, and the velocity is corrected
 /// afterwards by dt/2 (a_new - a_old).
-template <int Dim>
-class VelocityVerlet {
- public:
+struct VelocityVerlet {
   static constexpr const char* kName = "velocity Verlet";
   static constexpr bool kConservativeOnly = false;
+  static constexpr bool kRemembersAcceleration = true;
+  static constexpr int kEvaluations = 1;
+  static constexpr double time_of(int) { return 1; }
 
-  template <class G, class Forces>
-  void step(G& g, double dt, Forces& forces) {
-    for (Eigen::Index i = 0; i < g.position.cols(); ++i) {
-      const Vec<Dim> change = (dt * g.inverse_mass[i]) * g.force.col(i);
-      g.position.col(i) += dt * (g.velocity.col(i) + 0.5 * change);
-      g.velocity.col(i) += change;
-    }
-    old_force_ = g.force;
-    if constexpr (requires { g.omega; }) {
-      for (Eigen::Index i = 0; i < g.omega.cols(); ++i) {
-        g.omega.col(i) += (dt * g.inverse_inertia[i]) * g.torque.col(i);
-      }
-      old_torque_ = g.torque;
-    }
-    forces(dt);
-    for (Eigen::Index i = 0; i < g.position.cols(); ++i) {
-      g.velocity.col(i) += (0.5 * dt * g.inverse_mass[i]) * (g.force.col(i) - old_force_.col(i));
-    }
-    if constexpr (requires { g.omega; }) {
-      for (Eigen::Index i = 0; i < g.omega.cols(); ++i) {
-        g.omega.col(i) +=
-            (0.5 * dt * g.inverse_inertia[i]) * (g.torque.col(i) - old_torque_.col(i));
-      }
-    }
+  template <class V>
+  static void advance(int, V& x, V& v, const V& a, V& old, double dt) {
+    const V change = dt * a;
+    x += dt * (v + 0.5 * change);
+    v += change;
+    old = a;
   }
-
- private:
-  Columns<Dim> old_force_;
-  Columns<kSpinDim<Dim>> old_torque_;
+  template <class V>
+  static void finish(V&, V& v, const V& a, const V& old, double dt) {
+    v += (0.5 * dt) * (a - old);
+  }
 };
 
 /// Fourth order, symplectic, four force evaluations: position-extended Forest-Ruth-like scheme of
@@ -100,23 +72,34 @@ class VelocityVerlet {
 struct ForestRuth {
   static constexpr const char* kName = "Forest-Ruth (PEFRL)";
   static constexpr bool kConservativeOnly = true;
-
-  template <class G, class Forces>
-  void step(G& g, double dt, Forces& forces) {
-    constexpr double xi = 0.1786178958448091;
-    constexpr double lambda = -0.2123418310626054;
-    constexpr double chi = -0.06626458266981849;
-    constexpr std::array<double, 5> drifts{xi, chi, 1 - 2 * (chi + xi), chi, xi};
-    constexpr std::array<double, 4> kicks{0.5 - lambda, lambda, lambda, 0.5 - lambda};
+  static constexpr bool kRemembersAcceleration = false;
+  static constexpr int kEvaluations = 4;
+  static constexpr double time_of(int evaluation) {
     double t = 0;
-    for (std::size_t stage = 0; stage < kicks.size(); ++stage) {
-      detail::drift(g, drifts[stage] * dt);
-      t += drifts[stage] * dt;
-      forces(t);
-      detail::kick(g, kicks[stage] * dt);
-    }
-    detail::drift(g, drifts.back() * dt);
+    for (int k = 0; k <= evaluation; ++k) t += kDrifts[static_cast<std::size_t>(k)];
+    return t;
   }
+
+  template <class V>
+  static void advance(int evaluation, V& x, V& v, const V& a, V&, double dt) {
+    const auto k = static_cast<std::size_t>(evaluation);
+    if (k > 0) v += (kKicks[k - 1] * dt) * a;
+    x += (kDrifts[k] * dt) * v;
+  }
+  template <class V>
+  static void finish(V& x, V& v, const V& a, const V&, double dt) {
+    v += (kKicks.back() * dt) * a;
+    x += (kDrifts.back() * dt) * v;
+  }
+
+ private:
+  static constexpr double kXi = 0.1786178958448091;
+  static constexpr double kLambda = -0.2123418310626054;
+  static constexpr double kChi = -0.06626458266981849;
+  static constexpr std::array<double, 5> kDrifts{kXi, kChi, 1 - 2 * (kChi + kXi), kChi, kXi};
+  static constexpr std::array<double, 4> kKicks{0.5 - kLambda, kLambda, kLambda, 0.5 - kLambda};
 };
+
+static_assert(Integrator<SymplecticEuler> && Integrator<VelocityVerlet> && Integrator<ForestRuth>);
 
 }  // namespace lagrain

@@ -69,12 +69,16 @@ class Run {
   virtual std::vector<ContactRecord<Dim>> contacts() const = 0;  ///< grains first, in order
   virtual ContactStatistics statistics() const = 0;
   virtual Ledger ledger() const = 0;
-  virtual const std::vector<Pair>& near_pairs() const = 0;
+  virtual std::vector<Pair> near_pairs() const = 0;  ///< sorted
   virtual std::int64_t refreshes() const = 0;  ///< of the near list
   virtual const AnyNeighbourhood<Dim>& neighbourhood() const = 0;
   /// Wall-clock time spent on knowing the near pairs [s].
   virtual double neighbourhood_seconds() const = 0;
   virtual ModelSize size() const = 0;
+
+  /// Threads that share the steps from now on; results do not depend on it.
+  /// @throws ContractError if there are none
+  virtual void use_threads(int threads) = 0;
 
   int count() const { return static_cast<int>(radii().size()); }
   /// As it runs: the time step is in seconds.
@@ -117,6 +121,10 @@ std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, AnyNeighbourhood<Dim
 /// @throws ContractError if the scene names the triangulation
 template <int Dim>
 std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene);
+
+/// Threads worth starting for so many grains: one until a step is long against waking them up, then
+/// all cores.
+int threads_that_pay(int grains);
 
 /// What a run is made of and what it will cost, as text.
 template <int Dim>

@@ -3,18 +3,23 @@
 /// The step loop of the distinct element method.
 
 #include <lagrain/check.hpp>
+#include <lagrain/contact_kernel.hpp>
 #include <lagrain/contact_law.hpp>
 #include <lagrain/grains.hpp>
 #include <lagrain/integrator.hpp>
 #include <lagrain/law_table.hpp>
 #include <lagrain/near_list.hpp>
+#include <lagrain/records.hpp>
+#include <lagrain/spatial_order.hpp>
 #include <lagrain/time_step.hpp>
 #include <lagrain/walls.hpp>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -28,6 +33,8 @@ struct Setting {
   Vec<Dim> gravity = Vec<Dim>::Zero();  ///< [m/s^2]
   double time_step = 0;                 ///< [s]
   double largest_overlap = 0.3;         ///< of the smaller radius; beyond it the run stops [-]
+  int threads = 1;                      ///< that share a step; results do not depend on it
+  InstructionSet instructions = instruction_sets().back();  ///< nor on this
 };
 
 /// Energy that has come and gone since the start [J].
@@ -37,15 +44,25 @@ struct EnergyFlow {
   double friction = 0;   ///< taken by friction
 };
 
+/// Wall-clock time spent so far [s]. What is done once per step is measured only if asked for.
+struct PhaseTimes {
+  double refresh = 0;      ///< of the near list, the triangulation's updates included
+  double integration = 0;  ///< with the test whether the near list still holds
+  double pairs = 0;        ///< contacts between grains; the mean over the threads
+  double walls = 0;        ///< contacts with walls; the mean over the threads
+};
+
 /// A simulation composed at compile time: dimension, contact law (with or without friction),
 /// integrator, neighbourhood. The law decides what the grains and the contacts carry.
 ///
 /// The paper's scheme: detect contacts along the near edges of the triangulation (step 2), apply
 /// the law (3), integrate (4), update the triangulation when the near list has expired (5).
 ///
-/// Forces are summed in an order fixed by the grains' numbers, so every neighbourhood gives the
-/// same trajectory, bit for bit. Not thread-safe.
-template <int Dim, ContactLaw<Dim> Law, class Motion, Neighbourhood<Dim> N>
+/// Inside, grains lie in *slots* along Hilbert's curve, and are put in order again when they have
+/// mixed; outside, everything speaks of the grains' numbers, which never change. Forces are summed in
+/// an order fixed by the slots, so every neighbourhood, instruction set and number of threads gives
+/// the same trajectory, bit for bit. One object is for one caller at a time.
+template <int Dim, ContactLaw<Dim> Law, Integrator Motion, Neighbourhood<Dim> N>
 class Simulation {
  public:
   static constexpr Needs needs = Law::needs;
@@ -56,248 +73,443 @@ class Simulation {
   /// @throws ContractError if the time step is not safe (the message names the safe one), or a kind
   /// is not in the table of laws.
   Simulation(State grains, LawTable<Law> laws, std::vector<Wall<Dim>> walls, Setting<Dim> setting,
-             N neighbourhood = {}, Motion motion = {})
-      : grains_(std::move(grains)),
+             N neighbourhood = {})
+      : view_(std::move(grains)),
+        view_known_(true),
         laws_(std::move(laws)),
         walls_(std::move(walls)),
         setting_(std::move(setting)),
         neighbourhood_(std::move(neighbourhood)),
-        motion_(std::move(motion)) {
+        kernel_(setting_.instructions, view_.kind.empty()) {
     check_kinds();
-    const TimeScales scales = time_scales(grains_, laws_, walls_);
+    const TimeScales scales = time_scales(view_, laws_, walls_);
     std::ostringstream message;
     message << "time step " << setting_.time_step << " s: the stiffest contact lasts "
             << scales.contact << " s and allows at most " << scales.safe_step << " s";
     LAGRAIN_EXPECTS(setting_.time_step > 0 && setting_.time_step <= scales.safe_step,
                     message.str());
+    use_threads(setting_.threads);
     if (Motion::kConservativeOnly) check_conservative();
     for (Wall<Dim>& wall : walls_) wall.advance(0, 0);
+    store();
     evaluate_forces(0);  // with force_step_ = 0: memories and energies do not advance
     force_step_ = Motion::kConservativeOnly ? 0 : setting_.time_step;
     flow_ = {};
+    view_known_ = false;
   }
 
   /// One time step.
   /// @throws SimulationError if a grain is lost to NaN or two overlap beyond the limit.
   void step() {
+    view_known_ = false;
+    if (steps_ % kStepsBetweenSorts == kStepsBetweenSorts - 1) sort_if_mixed();
     const double start = time();
-    auto forces = [&](double t) {
+    for (int k = 0; k < Motion::kEvaluations; ++k) {
+      const double t = Motion::time_of(k) * setting_.time_step;
       for (Wall<Dim>& wall : walls_) wall.advance(start + t, t);
+      advance(k, start + t);
       evaluate_forces(start + t);
-    };
-    motion_.step(grains_, setting_.time_step, forces);
+    }
+    unfinished_ = true;
     ++steps_;
   }
 
   std::int64_t steps() const { return steps_; }
   double time() const { return static_cast<double>(steps_) * setting_.time_step; }  ///< [s]
-  const State& grains() const { return grains_; }
+  /// As they are now, by number. Put together when asked for; stays until the next step.
+  const State& grains() const {
+    if (!view_known_) look();
+    return view_;
+  }
   const std::vector<Wall<Dim>>& walls() const { return walls_; }
   const LawTable<Law>& laws() const { return laws_; }
   const Setting<Dim>& setting() const { return setting_; }
-  const NearList<Dim, Memory>& near() const { return near_; }
   const N& neighbourhood() const { return neighbourhood_; }
   const EnergyFlow& flow() const { return flow_; }
 
-  /// Wall-clock time spent so far on knowing the near pairs: tests whether the list has expired,
-  /// and refreshes [s].
-  double neighbourhood_seconds() const {
-    return std::chrono::duration<double>(neighbourhood_time_).count();
+  /// The listed pairs, sorted: they hold every contact while near_list_holds().
+  std::vector<Pair> near_pairs() const {
+    std::vector<Pair> pairs;
+    pairs.reserve(near_count());
+    for (const auto* table : {&near_.within, &near_.across}) {
+      for (const auto [a, b] : table->pairs()) {
+        const int i = number(a), j = number(b);
+        pairs.push_back({std::min(i, j), std::max(i, j)});
+      }
+    }
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+  }
+  std::size_t near_count() const { return near_.within.size() + near_.across.size(); }
+  std::int64_t refreshes() const { return near_.refreshes(); }  ///< of the near list
+  /// False when a step that ended with a move has made the list expire: the next forces renew it.
+  bool near_list_holds() const {
+    const Vec<Dim> shift = near_.shift(time());
+    const State& g = grains();
+    if (!near_.fresh() || !near_.walls_hold(walls_, shift)) return false;
+    for (int slot = 0; slot < count(); ++slot) {
+      if (!near_.holds(slot, g.position.col(number(slot)), shift)) return false;
+    }
+    return true;
   }
 
-  /// Visits every grain-grain contact: f(pair, touch, response, memory).
+  /// Threads that share the steps from now on.
+  /// @throws ContractError if there are none
+  void use_threads(int threads) {
+    LAGRAIN_EXPECTS(threads >= 1, "threads " + std::to_string(threads));
+    setting_.threads = threads;
+  }
+  const PhaseTimes& times() const { return times_; }
+  void measure_phases(bool on) { measuring_ = on; }
+  /// Wall-clock time spent so far on knowing the near pairs [s].
+  double neighbourhood_seconds() const { return times_.refresh; }
+
+  /// Visits every grain-grain contact: f(pair, touch, response, memory), as grain pair.i sees it;
+  /// pair.i may be the larger number.
   template <class F>
   void for_each_contact(F&& f) const {
-    for (std::size_t k = 0; k < near_.grains.pairs.size(); ++k) {
-      const Pair pair = near_.grains.pairs[k];
-      Touch<Dim> touch;
-      if (!touching(pair, touch)) continue;
-      Memory memory = memory_of(near_.grains, k);
-      f(pair, touch, laws_.of(grains_.kind, pair.i, pair.j).respond(touch, memory, 0), memory);
+    const State& g = grains();
+    for (const auto* table : {&near_.within, &near_.across}) {
+      for (std::size_t k = 0; k < table->size(); ++k) {
+        const Pair pair{number(table->pairs()[k].i), number(table->pairs()[k].j)};
+        const auto [touching, touch] = touch_of(body(g, pair.i), body(g, pair.j));
+        if (!touching) continue;
+        Memory memory = table->memory(k);
+        f(pair, touch, laws_.of(g.kind, pair.i, pair.j).respond(touch, memory, 0), memory);
+      }
     }
   }
 
   /// Visits every wall contact: f(wall pair, touch, response, memory).
   template <class F>
   void for_each_wall_contact(F&& f) const {
-    for (std::size_t k = 0; k < near_.walls.pairs.size(); ++k) {
-      const WallPair pair = near_.walls.pairs[k];
-      const Wall<Dim>& wall = walls_[static_cast<std::size_t>(pair.wall)];
-      Touch<Dim> touch;
-      if (!touching(pair, wall, touch)) continue;
-      Memory memory = memory_of(near_.walls, k);
-      f(pair, touch, laws_.with_wall(grains_.kind, pair.i, wall.kind).respond(touch, memory, 0),
-        memory);
+    const State& g = grains();
+    for (std::size_t k = 0; k < near_.walls.size(); ++k) {
+      const WallPair pair{number(near_.walls.pairs()[k].i), near_.walls.pairs()[k].wall};
+      const Wall<Dim>& wall = walls_[index(pair.wall)];
+      const auto [distance, normal] = wall.foot(g.position.col(pair.i));
+      const auto [touching, touch] =
+          touch_of_wall(body(g, pair.i), g.mass[pair.i], distance, normal, wall.velocity);
+      if (!touching) continue;
+      Memory memory = near_.walls.memory(k);
+      f(pair, touch, laws_.with_wall(g.kind, pair.i, wall.kind).respond(touch, memory, 0), memory);
     }
   }
 
  private:
   using Clock = std::chrono::steady_clock;
+  using Record = GrainRecord<Dim, needs>;
+  using Load = LoadRecord<Dim, needs>;
+  static constexpr bool kRemembers = Motion::kRemembersAcceleration;
+
+  /// What the integrator remembers of a grain.
+  struct Accelerations {
+    Vec<Dim> linear = Vec<Dim>::Zero();
+    [[no_unique_address]] std::conditional_t<needs.spin, SpinVec<Dim>, NoSpin> angular{};
+  };
+
+  /// Below this number all grains fit into the cache in any order.
+  static constexpr int kSortFrom = 1024;
+  static constexpr std::int64_t kStepsBetweenSorts = 10000;
+  /// Slots are put in order again when the way through all grains is longer by this factor.
+  static constexpr double kMixed = 1.3;
+
+  template <class I>
+  static std::size_t index(I i) {
+    return static_cast<std::size_t>(i);
+  }
+  static double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
+
+  int count() const { return static_cast<int>(records_.size()); }
+  /// The number of the grain in a slot.
+  int number(int slot) const { return numbers_.empty() ? slot : numbers_[index(slot)]; }
+
+  static Body<Dim, needs> body(const State& g, int i) {
+    Body<Dim, needs> b{g.position.col(i), g.velocity.col(i), g.radius[i], g.inverse_mass[i], {}};
+    if constexpr (needs.spin) b.omega = g.omega.col(i);
+    return b;
+  }
+
+  // ---- Between numbers and slots ---------------------------------------------------------------
+
+  /// Puts the grains of view_ into slots.
+  void store() {
+    const State& g = view_;
+    if (g.size() > kSortFrom && g.position.allFinite()) numbers_ = spatial_order<Dim>(g.position);
+    records_.resize(index(g.size()));
+    loads_.resize(index(g.size()));
+    if constexpr (kRemembers) old_.resize(index(g.size()));
+    radius_.resize(g.size());
+    if (!g.kind.empty()) kinds_.resize(index(g.size()));
+    for (int slot = 0; slot < g.size(); ++slot) {
+      const int i = number(slot);
+      Record& record = records_[index(slot)];
+      record.position() = g.position.col(i);
+      record.velocity() = g.velocity.col(i);
+      record.at[Record::kRadius] = radius_[slot] = g.radius[i];
+      record.at[Record::kInverseMass] = g.inverse_mass[i];
+      loads_[index(slot)].at[Load::kMass] = g.mass[i];
+      if constexpr (needs.spin) {
+        record.omega() = g.omega.col(i);
+        record.at[Record::kInverseInertia] = g.inverse_inertia[i];
+      }
+      if (!g.kind.empty()) kinds_[index(slot)] = g.kind[index(i)];
+      weigh(loads_[index(slot)]);
+    }
+    near_.reset(g.size(), std::max(kLeastBlock, (g.size() + kMostBlocks - 1) / kMostBlocks));
+  }
+
+  /// Puts the grains together by number, the step finished.
+  void look() const {
+    State& g = view_;
+    for (int slot = 0; slot < count(); ++slot) {
+      const int i = number(slot);
+      const Load& load = loads_[index(slot)];
+      Moving now(*this, slot);
+      if (unfinished_) now.finish(setting_.time_step);
+      g.position.col(i) = now.x;
+      g.velocity.col(i) = now.v;
+      g.force.col(i) = load.force();
+      if constexpr (needs.spin) {
+        g.omega.col(i) = now.omega;
+        g.torque.col(i) = load.torque();
+      }
+    }
+    view_known_ = true;
+  }
+
+  /// Gives the grains new slots if neighbours in space lie far apart in memory. Judged by places
+  /// alone at fixed steps, so that all neighbourhoods do the same.
+  void sort_if_mixed() {
+    if (count() <= kSortFrom) return;
+    check_finite();
+    const Columns<Dim> x = places();
+    const auto way = [&](auto&& slot_at) {
+      double length = 0;
+      for (int k = 1; k < count(); ++k) {
+        length += (x.col(slot_at(k)) - x.col(slot_at(k - 1))).norm();
+      }
+      return length;
+    };
+    const std::vector<int> order = spatial_order<Dim>(x);
+    if (way([](int k) { return k; }) <= kMixed * way([&](int k) { return order[index(k)]; })) return;
+    const auto permute = [&](auto& list) {
+      if (list.empty()) return;
+      auto sorted = list;
+      for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = list[index(order[k])];
+      list.swap(sorted);
+    };
+    permute(records_);
+    permute(loads_);
+    permute(numbers_);
+    permute(kinds_);
+    if constexpr (kRemembers) permute(old_);
+    std::vector<int> slot_of(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      slot_of[index(order[k])] = static_cast<int>(k);
+      radius_[static_cast<Eigen::Index>(k)] = records_[k].radius();
+    }
+    near_.renumber(slot_of);
+    if constexpr (requires { neighbourhood_.forget(); }) neighbourhood_.forget();
+  }
+
+  Columns<Dim> places() const {
+    Columns<Dim> x(Dim, count());
+    for (int slot = 0; slot < count(); ++slot) x.col(slot) = records_[index(slot)].position();
+    return x;
+  }
+
+  // ---- Motion ----------------------------------------------------------------------------------
+
+  /// A grain on its way through a step.
+  struct Moving {
+    Vec<Dim> x, v, a, old;
+    SpinVec<Dim> angle, omega, alpha, old_alpha;  // nobody asks for the angle
+
+    Moving(const Simulation& s, int slot) {
+      const Record& record = s.records_[index(slot)];
+      const Load& load = s.loads_[index(slot)];
+      x = record.position();
+      v = record.velocity();
+      a = record.at[Record::kInverseMass] * load.force();
+      if constexpr (kRemembers) old = s.old_[index(slot)].linear;
+      if constexpr (needs.spin) {
+        omega = record.omega();
+        alpha = record.at[Record::kInverseInertia] * load.torque();
+        angle = omega;
+        if constexpr (kRemembers) old_alpha = s.old_[index(slot)].angular;
+      }
+    }
+    void finish(double dt) {
+      Motion::finish(x, v, a, old, dt);
+      if constexpr (needs.spin) Motion::finish(angle, omega, alpha, old_alpha, dt);
+    }
+    void advance(int evaluation, double dt) {
+      Motion::advance(evaluation, x, v, a, old, dt);
+      if constexpr (needs.spin) Motion::advance(evaluation, angle, omega, alpha, old_alpha, dt);
+    }
+    void store(Simulation& s, int slot) const {
+      Record& record = s.records_[index(slot)];
+      record.position() = x;
+      record.velocity() = v;
+      if constexpr (kRemembers) s.old_[index(slot)].linear = old;
+      if constexpr (needs.spin) {
+        record.omega() = omega;
+        if constexpr (kRemembers) s.old_[index(slot)].angular = old_alpha;
+      }
+    }
+  };
+
+  /// Sets a load to the grain's weight.
+  void weigh(Load& load) const {
+    load.force() = load.at[Load::kMass] * setting_.gravity;
+    if constexpr (needs.spin) load.torque().setZero();
+  }
+
+  /// Finishes the last step if that is left to do, moves all grains to where the forces are wanted
+  /// next, and sees whether the near list holds there.
+  /// @param t  [s]
+  void advance(int evaluation, double t) {
+    const auto start = measuring_ ? Clock::now() : Clock::time_point{};
+    const Vec<Dim> shift = near_.shift(t);
+    bool holds = near_.fresh() && near_.walls_hold(walls_, shift);
+    const auto pass = [&]<bool kFinish>() {
+#pragma omp parallel for schedule(static) reduction(&& : holds) \
+    num_threads(setting_.threads) if (setting_.threads > 1)
+      for (int block = 0; block < near_.blocks(); ++block) {
+        const int end = near_.end_slot(block);
+        bool inside = true;
+        for (int slot = near_.first_slot(block); slot < end; ++slot) {
+          Moving grain(*this, slot);
+          if constexpr (kFinish) grain.finish(setting_.time_step);
+          grain.advance(evaluation, setting_.time_step);
+          grain.store(*this, slot);
+          weigh(loads_[index(slot)]);
+          if (holds) inside &= near_.holds(slot, grain.x, shift);
+        }
+        holds = holds && inside;
+      }
+    };
+    if (unfinished_) {
+      pass.template operator()<true>();
+    } else {
+      pass.template operator()<false>();
+    }
+    unfinished_ = false;
+    near_holds_ = holds;
+    if (measuring_) times_.integration += seconds(Clock::now() - start);
+  }
+
+  // ---- Forces ----------------------------------------------------------------------------------
 
   void evaluate_forces(double t) {
+    if (!near_holds_) refresh(t);
+    const ContactScene<Dim, Law> scene{records_.data(), loads_.data(), &kinds_,
+                                       &laws_,          walls_.data(), force_step_,
+                                       setting_.largest_overlap};
+    const int blocks = near_.blocks();
+    parts_.assign(index(blocks), {});
+    kept_.resize(near_.across.size());
+    wall_parts_.assign(index(blocks) * walls_.size(), Vec<Dim>::Zero());
+#pragma omp parallel num_threads(setting_.threads) if (setting_.threads > 1)
+    {
+      if (blocks > 1) {
+#pragma omp for schedule(dynamic)
+        for (int block = 0; block < blocks; ++block) {
+          Part& part = parts_[index(block)];
+          const auto start = measuring_ ? Clock::now() : Clock::time_point{};
+          part.across = kernel_.pairs(scene, near_.across, near_.first_across(block),
+                                     near_.first_across(block + 1), kept_.data());
+          if (measuring_) part.pair_seconds += seconds(Clock::now() - start);
+        }
+      }
+#pragma omp for schedule(dynamic)
+      for (int block = 0; block < blocks; ++block) block_forces(scene, block);
+    }
+
+    Tally total;
+    for (const Part& part : parts_) total += part.across;
+    for (const Part& part : parts_) {
+      total += part.within;
+      total += part.walls;
+      times_.pairs += part.pair_seconds / setting_.threads;
+      times_.walls += part.wall_seconds / setting_.threads;
+    }
+    flow_.dashpot += total.dashpot;
+    flow_.friction += total.friction;
+    for (std::size_t w = 0; w < walls_.size(); ++w) {
+      walls_[w].force.setZero();
+      for (int block = 0; block < blocks; ++block) {
+        walls_[w].force += wall_parts_[index(block) * walls_.size() + w];
+      }
+      flow_.wall_work -= walls_[w].force.dot(walls_[w].velocity) * force_step_;
+    }
+    if (total.excess > 0) report_deep_overlap();
+  }
+
+  /// All that adds to the loads of a block's grains, in a fixed order.
+  void block_forces(const ContactScene<Dim, Law>& scene, int block) {
+    Part& part = parts_[index(block)];
+    const auto start = measuring_ ? Clock::now() : Clock::time_point{};
+    part.within =
+        kernel_.pairs(scene, near_.within, near_.first_within(block), near_.first_within(block + 1));
+    for (const auto& end : near_.ends(block)) {
+      const PairLoad<Dim, needs>& both = kept_[index(end.pair)];
+      Load& load = loads_[index(end.slot)];
+      if (end.second) {
+        both.give_to_j(load);
+      } else {
+        both.give_to_i(load);
+      }
+    }
+    const auto between = measuring_ ? Clock::now() : Clock::time_point{};
+    part.walls = kernel_.walls(scene, near_.walls, near_.first_wall(block),
+                                   near_.first_wall(block + 1),
+                                   wall_parts_.data() + index(block) * walls_.size());
+    if (!measuring_) return;
+    part.pair_seconds += seconds(between - start);
+    part.wall_seconds += seconds(Clock::now() - between);
+  }
+
+  void refresh(double t) {
     const auto start = Clock::now();
-    if (near_.expired(grains_.position, walls_, t)) {
-      check_finite();
-      near_.refresh(grains_, walls_, neighbourhood_, t, setting_.time_step, steps_);
-    }
-    neighbourhood_time_ += Clock::now() - start;
-    for (Eigen::Index i = 0; i < grains_.force.cols(); ++i) {
-      grains_.force.col(i) = grains_.mass[i] * setting_.gravity;
-    }
-    if constexpr (needs.spin) grains_.torque.setZero();
-    for (Wall<Dim>& wall : walls_) wall.force.setZero();
-    deepest_ = {};
-    grain_forces();
-    wall_forces();
-    if (deepest_.ratio > setting_.largest_overlap) report_deep_overlap();
+    check_finite();
+    near_.refresh(
+        places(), radius_, [&](int slot) { return records_[index(slot)].velocity(); }, walls_,
+        neighbourhood_, t, setting_.time_step, steps_);
+    near_holds_ = true;
+    times_.refresh += seconds(Clock::now() - start);
   }
 
-  void grain_forces() {
-    const std::size_t count = near_.grains.pairs.size();
-    for (std::size_t k = 0; k < count; ++k) {
-      const auto [i, j] = near_.grains.pairs[k];
-      Touch<Dim> touch;
-      if (!touching({i, j}, touch)) {
-        forget(near_.grains, k);
-        continue;
-      }
-      const Response<Dim> response = respond(laws_.of(grains_.kind, i, j), touch, near_.grains, k);
-      grains_.force.col(i) += response.force;
-      grains_.force.col(j) -= response.force;
-      if constexpr (needs.spin) {
-        // Both forces act at one point, so that angular momentum is conserved exactly.
-        const Vec<Dim> arm_i = -(grains_.radius[i] - 0.5 * touch.overlap) * touch.normal;
-        const Vec<Dim> arm_j = (grains_.radius[j] - 0.5 * touch.overlap) * touch.normal;
-        grains_.torque.col(i) += torque(arm_i, response.force);
-        grains_.torque.col(j) -= torque(arm_j, response.force);
-      }
-      note_overlap(touch.overlap, std::min(grains_.radius[i], grains_.radius[j]), i, j);
-    }
-  }
-
-  void wall_forces() {
-    const std::size_t count = near_.walls.pairs.size();
-    for (std::size_t k = 0; k < count; ++k) {
-      const auto [w, i] = near_.walls.pairs[k];
-      Wall<Dim>& wall = walls_[static_cast<std::size_t>(w)];
-      Touch<Dim> touch;
-      if (!touching(WallPair{w, i}, wall, touch)) {
-        forget(near_.walls, k);
-        continue;
-      }
-      const Response<Dim> response =
-          respond(laws_.with_wall(grains_.kind, i, wall.kind), touch, near_.walls, k);
-      grains_.force.col(i) += response.force;
-      wall.force -= response.force;
-      flow_.wall_work += response.force.dot(wall.velocity) * force_step_;
-      if constexpr (needs.spin) {
-        const Vec<Dim> arm = -(grains_.radius[i] - touch.overlap) * touch.normal;
-        grains_.torque.col(i) += torque(arm, response.force);
-      }
-      note_overlap(touch.overlap, grains_.radius[i], i, -1 - w);
-    }
-  }
-
-  /// Fills in the touch of two grains; false if they do not touch.
-  bool touching(Pair pair, Touch<Dim>& touch) const {
-    const auto [i, j] = pair;
-    const double inverse_mass = grains_.inverse_mass[i] + grains_.inverse_mass[j];
-    if (inverse_mass == 0) return false;  // both are pinned
-    const Vec<Dim> between = grains_.position.col(i) - grains_.position.col(j);
-    const double reach = grains_.radius[i] + grains_.radius[j];
-    const double squared = between.squaredNorm();
-    if (!(squared < reach * reach)) return false;
-    const double distance = std::sqrt(squared);
-    touch.overlap = reach - distance;
-    // Coincident centres have no direction of their own; any fixed one parts them.
-    touch.normal = distance > 0 ? Vec<Dim>(between / distance) : Vec<Dim>(Vec<Dim>::UnitX());
-    Vec<Dim> velocity = grains_.velocity.col(i) - grains_.velocity.col(j);
-    touch.closing = -velocity.dot(touch.normal);
-    if constexpr (needs.spin) {
-      const double half = 0.5 * touch.overlap;
-      velocity -= cross(SpinVec<Dim>((grains_.radius[i] - half) * grains_.omega.col(i) +
-                                     (grains_.radius[j] - half) * grains_.omega.col(j)),
-                        touch.normal);
-      touch.slip = velocity + touch.closing * touch.normal;
-    }
-    if constexpr (needs.memory) {
-      touch.twist =
-          about(touch.normal, SpinVec<Dim>(0.5 * (grains_.omega.col(i) + grains_.omega.col(j))));
-    }
-    touch.effective_mass = 1 / inverse_mass;
-    touch.effective_radius = grains_.radius[i] * grains_.radius[j] / reach;
-    return true;
-  }
-
-  /// Fills in the touch of a grain with a wall; false if they do not touch.
-  bool touching(WallPair pair, const Wall<Dim>& wall, Touch<Dim>& touch) const {
-    const int i = pair.i;
-    const auto [distance, normal] = wall.foot(grains_.position.col(i));
-    touch.overlap = grains_.radius[i] - distance;
-    if (!(touch.overlap > 0)) return false;
-    touch.normal = normal;
-    Vec<Dim> velocity = grains_.velocity.col(i) - wall.velocity;
-    touch.closing = -velocity.dot(normal);
-    if constexpr (needs.spin) {
-      velocity -= cross(SpinVec<Dim>(distance * grains_.omega.col(i)), normal);
-      touch.slip = velocity + touch.closing * normal;
-    }
-    if constexpr (needs.memory) {
-      touch.twist = about(normal, SpinVec<Dim>(0.5 * grains_.omega.col(i)));
-    }
-    touch.effective_mass = grains_.mass[i];
-    touch.effective_radius = grains_.radius[i];
-    return true;
-  }
-
-  template <class P>
-  static Memory memory_of(const PairTable<P, Memory>& table, std::size_t k) {
-    if constexpr (PairTable<P, Memory>::kRemembers) return table.memory[k];
-    return Memory{};
-  }
-
-  template <class P>
-  static void forget(PairTable<P, Memory>& table, std::size_t k) {
-    if constexpr (PairTable<P, Memory>::kRemembers) table.memory[k] = Memory{};
-  }
-
-  template <class P>
-  Response<Dim> respond(const Law& law, const Touch<Dim>& touch, PairTable<P, Memory>& table,
-                        std::size_t k) {
-    Memory none;
-    Memory* memory = &none;
-    if constexpr (PairTable<P, Memory>::kRemembers) memory = &table.memory[k];
-    const Response<Dim> response = law.respond(touch, *memory, force_step_);
-    flow_.dashpot += response.dashpot_loss;
-    flow_.friction += response.friction_loss;
-    return response;
-  }
-
-  void note_overlap(double overlap, double smaller_radius, int i, int j) {
-    if (overlap > deepest_.ratio * smaller_radius) {
-      deepest_ = {overlap / smaller_radius, i, j};
-    }
-  }
-
-  [[noreturn]] void report_deep_overlap() const {
-    std::ostringstream message;
-    message << "t = " << time() << " s: grain " << deepest_.i << " overlaps ";
-    if (deepest_.j >= 0) {
-      message << "grain " << deepest_.j;
-    } else {
-      message << "wall " << walls_[static_cast<std::size_t>(-1 - deepest_.j)].name;
-    }
-    message << " by " << deepest_.ratio << " of the smaller radius (limit "
-            << setting_.largest_overlap
-            << "); a stiffer contact, a smaller time step or a gentler start would help";
-    throw SimulationError(message.str());
+  [[noreturn]] void report_deep_overlap() {
+    unfinished_ = false;
+    double deepest = 0;
+    std::ostringstream what;
+    const auto note = [&](double ratio, int i, const std::string& partner) {
+      if (ratio <= deepest) return;
+      deepest = ratio;
+      what.str({});
+      what << "t = " << time() << " s: grain " << i << " overlaps " << partner << " by " << ratio
+           << " of the smaller radius";
+    };
+    for_each_contact([&](Pair pair, const Touch<Dim>& touch, auto&&...) {
+      note(touch.overlap / std::min(view_.radius[pair.i], view_.radius[pair.j]),
+           std::min(pair.i, pair.j), "grain " + std::to_string(std::max(pair.i, pair.j)));
+    });
+    for_each_wall_contact([&](WallPair pair, const Touch<Dim>& touch, auto&&...) {
+      note(touch.overlap / view_.radius[pair.i], pair.i, "wall " + walls_[index(pair.wall)].name);
+    });
+    what << " (limit " << setting_.largest_overlap
+         << "); a stiffer contact, a smaller time step or a gentler start would help";
+    throw SimulationError(what.str());
   }
 
   void check_finite() const {
-    for (int i = 0; i < grains_.size(); ++i) {
-      if (grains_.position.col(i).allFinite() && grains_.velocity.col(i).allFinite()) continue;
+    for (int slot = 0; slot < count(); ++slot) {
+      const Record& record = records_[index(slot)];
+      if (record.position().allFinite() && record.velocity().allFinite()) continue;
       std::ostringstream message;
-      message << "t = " << time() << " s: grain " << i
+      message << "t = " << time() << " s: grain " << number(slot)
               << " has a place or velocity that is not a number; a smaller time step would help";
       throw SimulationError(message.str());
     }
@@ -307,9 +519,9 @@ class Simulation {
     const int kinds = laws_.kinds();
     const std::string have = ", but the table of laws has " + std::to_string(kinds) + " kinds";
     LAGRAIN_EXPECTS(kinds >= 1, "the table of laws is empty");
-    for (std::size_t i = 0; i < grains_.kind.size(); ++i) {
-      LAGRAIN_EXPECTS(grains_.kind[i] < kinds, "grain " + std::to_string(i) + " is of kind " +
-                                                   std::to_string(grains_.kind[i]) + have);
+    for (std::size_t i = 0; i < view_.kind.size(); ++i) {
+      LAGRAIN_EXPECTS(view_.kind[i] < kinds, "grain " + std::to_string(i) + " is of kind " +
+                                                 std::to_string(view_.kind[i]) + have);
     }
     for (const Wall<Dim>& wall : walls_) {
       LAGRAIN_EXPECTS(wall.kind >= 0 && wall.kind < kinds,
@@ -331,24 +543,42 @@ class Simulation {
     }
   }
 
-  struct Deepest {
-    double ratio = 0;
-    int i = 0;
-    int j = 0;  // -1 - w for wall w
+  /// Blocks of slots, the unit of work of a thread: large enough that few pairs lie across them.
+  static constexpr int kLeastBlock = 2048;
+  static constexpr int kMostBlocks = 128;
+
+  /// What a block's sweeps added up.
+  struct Part {
+    Tally across, within, walls;
+    double pair_seconds = 0, wall_seconds = 0;
   };
 
-  State grains_;
+  mutable State view_;
+  mutable bool view_known_ = false;
+  std::vector<int> numbers_;  // of the grains in the slots; empty if they are the slots
+  std::vector<Record> records_;
+  std::vector<Load> loads_;
+  std::vector<Accelerations> old_;
+  std::vector<std::uint8_t> kinds_;
+  Eigen::VectorXd radius_;
+
   LawTable<Law> laws_;
   std::vector<Wall<Dim>> walls_;
   Setting<Dim> setting_;
   N neighbourhood_;
-  Motion motion_;
+  ContactKernel<Dim, Law> kernel_;
   NearList<Dim, Memory> near_;
+  bool near_holds_ = false;
+  bool unfinished_ = false;  // the integrator's last word on the step is still to be spoken
   EnergyFlow flow_;
-  Deepest deepest_;
-  double force_step_ = 0;  ///< what memories and losses advance by in an evaluation [s]
+  double force_step_ = 0;  // what memories and losses advance by in an evaluation [s]
   std::int64_t steps_ = 0;
-  Clock::duration neighbourhood_time_{0};
+  PhaseTimes times_;
+  bool measuring_ = false;
+
+  std::vector<Part> parts_;
+  std::vector<PairLoad<Dim, needs>> kept_;
+  std::vector<Vec<Dim>> wall_parts_;  // forces on the walls, by block
 };
 
 }  // namespace lagrain

@@ -2,30 +2,115 @@
 /// @file
 /// One contact as a law sees it, and what the law answers.
 
+#include <lagrain/lanes.hpp>
+#include <lagrain/needs.hpp>
 #include <lagrain/vec.hpp>
+
+#include <type_traits>
 
 namespace lagrain {
 
 /// A contact of grain i with a partner j: another grain or a wall.
-template <int Dim>
+template <int Dim, class Real = double>
 struct Touch {
-  double overlap = 0;                  ///< r_i + r_j - |x_i - x_j| [m], positive
-  Vec<Dim> normal = Vec<Dim>::Zero();  ///< unit vector from j to i [-]
-  double closing = 0;                  ///< -(v_i - v_j) . normal [m/s], positive when approaching
-  Vec<Dim> slip = Vec<Dim>::Zero();    ///< tangential velocity of i against j at the contact [m/s]
+  Real overlap = 0;  ///< r_i + r_j - |x_i - x_j| [m], positive
+  Vec<Dim, Real> normal = Vec<Dim, Real>::Zero();  ///< unit vector from j to i [-]
+  Real closing = 0;  ///< -(v_i - v_j) . normal [m/s], positive when approaching
+  /// Tangential velocity of i against j at the contact [m/s].
+  Vec<Dim, Real> slip = Vec<Dim, Real>::Zero();
   /// Mean angular velocity of the two about the normal [rad/s]: how fast the contact turns in its
   /// own plane. Known to laws that remember; a wall does not turn.
-  SpinVec<Dim> twist = SpinVec<Dim>::Zero();
-  double effective_mass = 0;    ///< m_i m_j / (m_i + m_j) [kg]; m_i against a wall
-  double effective_radius = 0;  ///< r_i r_j / (r_i + r_j) [m]; r_i against a wall
+  SpinVec<Dim, Real> twist = SpinVec<Dim, Real>::Zero();
+  Real effective_mass = 0;    ///< m_i m_j / (m_i + m_j) [kg]; m_i against a wall
+  Real effective_radius = 0;  ///< r_i r_j / (r_i + r_j) [m]; r_i against a wall
 };
 
 /// The answer of a law, and where the energy of the step went.
-template <int Dim>
+template <int Dim, class Real = double>
 struct Response {
-  Vec<Dim> force = Vec<Dim>::Zero();  ///< on i [N]; j receives the opposite
-  double dashpot_loss = 0;            ///< energy taken by the normal dashpot in this step [J]
-  double friction_loss = 0;           ///< energy taken by sliding and tangential damping [J]
+  Vec<Dim, Real> force = Vec<Dim, Real>::Zero();  ///< on i [N]; j receives the opposite
+  Real dashpot_loss = 0;   ///< energy taken by the normal dashpot in this step [J]
+  Real friction_loss = 0;  ///< energy taken by sliding and tangential damping [J]
 };
+
+/// A grain as its contacts see it.
+template <int Dim, Needs needs, class Real = double>
+struct Body {
+  Vec<Dim, Real> position;  ///< [m]
+  Vec<Dim, Real> velocity;  ///< [m/s]
+  Real radius;              ///< [m]
+  Real inverse_mass;        ///< [1/kg], 0 for a pinned grain
+  struct NoOmega {};
+  [[no_unique_address]] std::conditional_t<needs.spin, SpinVec<Dim, Real>, NoOmega>
+      omega;  ///< [rad/s]
+};
+
+/// A contact, or two grains apart: then `touching` is false and the touch means nothing.
+template <int Dim, class Real>
+struct MaybeTouch {
+  decltype(Real(0) < Real(0)) touching;
+  Touch<Dim, Real> touch;
+};
+
+template <Needs needs, int Dim, class Real>
+MaybeTouch<Dim, Real> touch_of(const Body<Dim, needs, Real>& i, const Body<Dim, needs, Real>& j) {
+  using std::sqrt;
+  MaybeTouch<Dim, Real> result;
+  Touch<Dim, Real>& touch = result.touch;
+  const Real inverse_mass = i.inverse_mass + j.inverse_mass;
+  const Vec<Dim, Real> between = i.position - j.position;
+  const Real reach = i.radius + j.radius;
+  const Real distance_squared = squared(between);
+  // Two pinned grains never touch.
+  result.touching = distance_squared < only_if(inverse_mass > Real(0), Real(reach * reach));
+  if (!any(result.touching)) return result;
+
+  const Real distance = sqrt(distance_squared);
+  touch.overlap = reach - distance;
+  // Coincident centres have no direction of their own; any fixed one parts them.
+  const Real inverse_distance = only_if(distance > Real(0), Real(1 / distance));
+  touch.normal = inverse_distance * between;
+  touch.normal[0] = select(distance > Real(0), touch.normal[0], Real(1));
+  Vec<Dim, Real> velocity = i.velocity - j.velocity;
+  touch.closing = -dot(velocity, touch.normal);
+  if constexpr (needs.spin) {
+    const Real half = 0.5 * touch.overlap;
+    const SpinVec<Dim, Real> rolling =
+        (i.radius - half) * i.omega + (j.radius - half) * j.omega;
+    velocity -= cross<Real>(rolling, touch.normal);
+    touch.slip = velocity + touch.closing * touch.normal;
+  }
+  if constexpr (needs.memory) {
+    touch.twist = about<Real>(touch.normal, SpinVec<Dim, Real>(Real(0.5) * (i.omega + j.omega)));
+  }
+  touch.effective_mass = Real(1) / inverse_mass;
+  touch.effective_radius = i.radius * j.radius / reach;
+  return result;
+}
+
+/// A grain of a mass [kg] against a wall whose surface is `distance` [m] from the grain's centre,
+/// with its unit normal towards the grain, and moves with `wall_velocity` [m/s].
+template <Needs needs, int Dim, class Real>
+MaybeTouch<Dim, Real> touch_of_wall(const Body<Dim, needs, Real>& i, const Real& mass,
+                                    const Real& distance, const Vec<Dim, Real>& normal,
+                                    const Vec<Dim, Real>& wall_velocity) {
+  MaybeTouch<Dim, Real> result;
+  Touch<Dim, Real>& touch = result.touch;
+  touch.overlap = i.radius - distance;
+  result.touching = touch.overlap > Real(0);
+  touch.normal = normal;
+  Vec<Dim, Real> velocity = i.velocity - wall_velocity;
+  touch.closing = -dot(velocity, normal);
+  if constexpr (needs.spin) {
+    velocity -= cross<Real>(SpinVec<Dim, Real>(distance * i.omega), normal);
+    touch.slip = velocity + touch.closing * normal;
+  }
+  if constexpr (needs.memory) {
+    touch.twist = about<Real>(normal, SpinVec<Dim, Real>(Real(0.5) * i.omega));
+  }
+  touch.effective_mass = mass;
+  touch.effective_radius = i.radius;
+  return result;
+}
 
 }  // namespace lagrain

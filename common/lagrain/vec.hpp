@@ -6,9 +6,9 @@
 
 namespace lagrain {
 
-/// A point or vector, shape Dim.
-template <int Dim>
-using Vec = Eigen::Matrix<double, Dim, 1>;
+/// A point or vector, shape Dim; of several contacts at once if Real is Lanes.
+template <int Dim, class Real = double>
+using Vec = Eigen::Matrix<Real, Dim, 1>;
 
 /// Rows x N, one column per grain, columns contiguous.
 template <int Rows>
@@ -19,33 +19,52 @@ template <int Dim>
 inline constexpr int kSpinDim = Dim == 2 ? 1 : 3;
 
 /// Angular velocity [rad/s] or torque [N m]; in the plane one number, counter-clockwise positive.
-template <int Dim>
-using SpinVec = Eigen::Matrix<double, kSpinDim<Dim>, 1>;
+template <int Dim, class Real = double>
+using SpinVec = Eigen::Matrix<Real, kSpinDim<Dim>, 1>;
 
-/// Velocity omega x r of the point at arm r from the centre, shape Dim.
-inline Vec<2> cross(const SpinVec<2>& omega, const Vec<2>& arm) {
+/// Scalar product, summed from the first component to the last: Eigen's own order of summation
+/// differs between number types, and results must not.
+template <class A, class B>
+typename A::Scalar dot(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
+  typename A::Scalar sum = a.coeff(0) * b.coeff(0);
+  for (int k = 1; k < A::RowsAtCompileTime; ++k) sum += a.coeff(k) * b.coeff(k);
+  return sum;
+}
+template <class A>
+typename A::Scalar squared(const Eigen::MatrixBase<A>& a) {
+  return dot(a, a);
+}
+
+/// a x b in space. In the plane a is along the missing axis: the velocity omega x r of the point at
+/// arm r from the centre.
+template <class Real>
+Vec<2, Real> cross(const Eigen::Matrix<Real, 1, 1>& omega, const Vec<2, Real>& arm) {
   return {-omega[0] * arm[1], omega[0] * arm[0]};
 }
-inline Vec<3> cross(const SpinVec<3>& omega, const Vec<3>& arm) {
-  return {omega[1] * arm[2] - omega[2] * arm[1], omega[2] * arm[0] - omega[0] * arm[2],
-          omega[0] * arm[1] - omega[1] * arm[0]};
+template <class Real>
+Vec<3, Real> cross(const Vec<3, Real>& a, const Vec<3, Real>& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
 /// Torque r x f of a force at arm r.
-inline SpinVec<2> torque(const Vec<2>& arm, const Vec<2>& force) {
-  return SpinVec<2>(arm[0] * force[1] - arm[1] * force[0]);
+template <class Real>
+SpinVec<2, Real> torque(const Vec<2, Real>& arm, const Vec<2, Real>& force) {
+  return SpinVec<2, Real>(arm[0] * force[1] - arm[1] * force[0]);
 }
-inline SpinVec<3> torque(const Vec<3>& arm, const Vec<3>& force) {
-  return cross(SpinVec<3>(arm), force);
+template <class Real>
+SpinVec<3, Real> torque(const Vec<3, Real>& arm, const Vec<3, Real>& force) {
+  return cross<Real>(arm, force);
 }
 
 /// The part of a spin that turns about the direction n (unit): none in the plane, where every axis
 /// is at a right angle to n.
-inline SpinVec<2> about(const Vec<2>&, const SpinVec<2>&) {
-  return SpinVec<2>(0.0);
+template <class Real>
+SpinVec<2, Real> about(const Vec<2, Real>&, const Eigen::Matrix<Real, 1, 1>&) {
+  return SpinVec<2, Real>(Real(0.0));
 }
-inline SpinVec<3> about(const Vec<3>& n, const SpinVec<3>& omega) {
-  return n.dot(omega) * n;
+template <class Real>
+SpinVec<3, Real> about(const Vec<3, Real>& n, const Vec<3, Real>& omega) {
+  return dot(n, omega) * n;
 }
 
 }  // namespace lagrain

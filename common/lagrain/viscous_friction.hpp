@@ -22,20 +22,22 @@ namespace lagrain {
 template <class Normal>
 struct ViscousFriction {
   static constexpr Needs needs{.spin = true, .memory = false};
-  template <int Dim>
+  template <int Dim, class Real = double>
   using Memory = NoMemory;
 
   Normal normal;
   double friction = 0;                    ///< mu [-]
   double tangential_damping_ratio = 0.5;  ///< zeta_t [-]
 
-  template <int Dim>
-  Response<Dim> respond(const Touch<Dim>& touch, NoMemory&, double time_step) const {
-    const double fn = normal.normal_force(touch);
-    const double g =
-        2 * tangential_damping_ratio * std::sqrt(normal.stiffness_at(touch) * touch.effective_mass);
-    const double speed = touch.slip.norm();
-    const double coefficient = g * speed <= friction * fn ? g : friction * fn / speed;
+  template <int Dim, class Real>
+  Response<Dim, Real> respond(const Touch<Dim, Real>& touch, NoMemory&, double time_step) const {
+    using std::sqrt;
+    const Real fn = normal.normal_force(touch);
+    const Real g = 2 * tangential_damping_ratio * sqrt(normal.stiffness_at(touch)) *
+                   sqrt(touch.effective_mass);
+    const Real limit = friction * fn;
+    const Real speed = sqrt(squared(touch.slip));
+    const Real coefficient = select(g * speed <= limit, g, Real(limit / speed));
     return {fn * touch.normal - coefficient * touch.slip,
             (fn - normal.elastic_force(touch)) * touch.closing * time_step,
             coefficient * speed * speed * time_step};

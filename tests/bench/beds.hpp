@@ -24,7 +24,7 @@ namespace lagrain::bench {
 
 using Law = CundallStrack<LinearSpring>;
 template <int Dim, class N>
-using Bed = Simulation<Dim, Law, VelocityVerlet<Dim>, N>;
+using Bed = Simulation<Dim, Law, VelocityVerlet, N>;
 
 /// Radii [m]: all 1; uniform in [1/2, 1]; half of the volume 1 and half 1/10.
 enum class Sizes { equal, spread, mixed };

@@ -43,7 +43,7 @@ void step(benchmark::State& state, Sizes sizes, bool shaken) {
   ContactAudit<Dim> audit;
   const Ledger start = energy_ledger(bed);
   const std::int64_t first_step = bed.steps();
-  const std::int64_t first_refresh = bed.near().refreshes();
+  const std::int64_t first_refresh = bed.refreshes();
   const double before = bed.neighbourhood_seconds();
   TriangulationCost cost_before;
   if constexpr (kIsTriangulation<Dim, N>) cost_before = bed.neighbourhood().cost();
@@ -57,9 +57,9 @@ void step(benchmark::State& state, Sizes sizes, bool shaken) {
     for (int s = 0; s < kStepsPerSample; ++s) bed.step();
     seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     state.PauseTiming();
-    audit.check(bed.grains().position, bed.grains().radius, bed.near().grains.pairs);
+    audit.check(bed.grains().position, bed.grains().radius, bed.near_pairs());
     const ContactStatistics statistics = contact_statistics(bed);
-    near_pairs += static_cast<double>(bed.near().grains.pairs.size());
+    near_pairs += static_cast<double>(bed.near_count());
     contacts += static_cast<double>(statistics.contacts);
     deepest = std::max(deepest, statistics.largest_overlap);
     ++samples;
@@ -74,7 +74,7 @@ void step(benchmark::State& state, Sizes sizes, bool shaken) {
   counters["contacts_per_grain"] = contacts / samples / n;
   counters["near_per_contact"] = near_pairs / contacts;
   counters["refreshes_per_1000"] =
-      1000 * static_cast<double>(bed.near().refreshes() - first_refresh) / steps;
+      1000 * static_cast<double>(bed.refreshes() - first_refresh) / steps;
   if constexpr (kIsTriangulation<Dim, N>) {
     const TriangulationCost& cost = bed.neighbourhood().cost();
     counters["edges_per_contact"] =

@@ -1,5 +1,8 @@
 #include <lagrain/grains.hpp>
 
+#include <lagrain/pair_table.hpp>
+#include <lagrain/records.hpp>
+
 #include <support/scenes.hpp>
 
 #include <doctest/doctest.h>
@@ -30,8 +33,8 @@ static_assert(HasOmega<Grains<3, ViscousHertz::needs>>);
 // A frictionless contact stores nothing either.
 template <class Law>
 using Contacts = PairTable<Pair, typename Law::template Memory<3>>;
-static_assert(!Contacts<LinearSpring>::kRemembers && !Contacts<ViscousSpring>::kRemembers);
-static_assert(Contacts<FrictionalSpring>::kRemembers);
+static_assert(Contacts<LinearSpring>::kReals == 0 && Contacts<ViscousSpring>::kReals == 0);
+static_assert(Contacts<FrictionalSpring>::kReals == 3);
 
 template <int Dim>
 Grain<Dim> unit_grain() {
@@ -45,26 +48,21 @@ Grain<Dim> unit_grain() {
 
 TEST_SUITE("grains") {
   TEST_CASE("a grain costs what its model needs") {
-    // place, velocity, force; radius, mass, 1/mass; spin, torque, 1/inertia
-    CHECK(bytes_per_grain<2, LinearSpring::needs>() == 8 * (6 + 3));
-    CHECK(bytes_per_grain<3, LinearSpring::needs>() == 8 * (9 + 3));
-    CHECK(bytes_per_grain<2, FrictionalSpring::needs>() == 8 * (6 + 3 + 3));
-    CHECK(bytes_per_grain<3, FrictionalSpring::needs>() == 8 * (9 + 3 + 7));
-  }
-
-  TEST_CASE_TEMPLATE("the bytes named are the bytes stored", C, Case<2, LinearSpring>,
-                     Case<3, LinearSpring>, Case<2, FrictionalSpring>, Case<3, FrictionalSpring>) {
-    const std::vector<Grain<C::Dim>> list(7, unit_grain<C::Dim>());
-    const auto g = make_grains<C::Dim, C::Law::needs>(list);
-
-    auto numbers = g.position.size() + g.velocity.size() + g.force.size() + g.radius.size() +
-                   g.mass.size() + g.inverse_mass.size();
-    if constexpr (C::Law::needs.spin) {
-      numbers += g.omega.size() + g.torque.size() + g.inverse_inertia.size();
-    }
-    CHECK(static_cast<std::size_t>(numbers) * sizeof(double) ==
-          7 * bytes_per_grain<C::Dim, C::Law::needs>());
-    CHECK(g.kind.empty());
+    // What contacts read: place, velocity, radius, 1/mass; spin, 1/inertia.
+    CHECK(sizeof(GrainRecord<2, LinearSpring::needs>) == 8 * (4 + 2));
+    CHECK(sizeof(GrainRecord<3, LinearSpring::needs>) == 8 * (6 + 2));
+    CHECK(sizeof(GrainRecord<2, FrictionalSpring::needs>) == 8 * (4 + 2 + 2));
+    CHECK(sizeof(GrainRecord<3, FrictionalSpring::needs>) == 8 * (6 + 2 + 4));
+    // What they write: force and mass; torque. In fours.
+    CHECK(sizeof(LoadRecord<2, LinearSpring::needs>) == 8 * 4);
+    CHECK(sizeof(LoadRecord<3, LinearSpring::needs>) == 8 * 4);
+    CHECK(sizeof(LoadRecord<2, FrictionalSpring::needs>) == 8 * 4);
+    CHECK(sizeof(LoadRecord<3, FrictionalSpring::needs>) == 8 * 8);
+    // With the old accelerations, and the place and margin of the near list.
+    CHECK(bytes_per_grain<2, LinearSpring::needs>() == 48 + 32 + 16 + 24);
+    CHECK(bytes_per_grain<3, LinearSpring::needs>() == 64 + 32 + 24 + 32);
+    CHECK(bytes_per_grain<2, FrictionalSpring::needs>() == 64 + 32 + 24 + 24);
+    CHECK(bytes_per_grain<3, FrictionalSpring::needs>() == 96 + 64 + 48 + 32);
   }
 
   TEST_CASE("discs are rods of unit depth, spheres are spheres") {

@@ -76,8 +76,8 @@ struct Scheme {
 };
 
 #define SCHEMES                                                                         \
-  Scheme<2, SymplecticEuler>, Scheme<3, SymplecticEuler>, Scheme<2, VelocityVerlet<2>>, \
-      Scheme<3, VelocityVerlet<3>>, Scheme<2, ForestRuth>, Scheme<3, ForestRuth>
+  Scheme<2, SymplecticEuler>, Scheme<3, SymplecticEuler>, Scheme<2, VelocityVerlet>, \
+      Scheme<3, VelocityVerlet>, Scheme<2, ForestRuth>, Scheme<3, ForestRuth>
 
 }  // namespace
 
@@ -159,7 +159,7 @@ TEST_SUITE("integrator") {
                      Case<3, LinearSpring>, Case<2, Hertz>, Case<3, Hertz>) {
     constexpr int Dim = C::Dim;
     using Law = typename C::Law;
-    using Motion = VelocityVerlet<Dim>;
+    using Motion = VelocityVerlet;
     const Law law = make_law<Law>({.stiffness = 1e4, .restitution = 0.5});
     const double dt = 4e-4;
     constexpr int kSteps = 50;

@@ -31,7 +31,7 @@ using ViscousSpring = ViscousFriction<LinearSpring>;
 using ViscousHertz = ViscousFriction<Hertz>;
 
 /// A simulation by velocity Verlet over brute force, unless a test asks for something else.
-template <int Dim, class Law, class N = AllPairs<Dim>, class Motion = VelocityVerlet<Dim>>
+template <int Dim, class Law, class N = AllPairs<Dim>, class Motion = VelocityVerlet>
 using Sim = Simulation<Dim, Law, Motion, N>;
 
 /// What one can measure of a material; each law takes what it needs.
@@ -115,7 +115,7 @@ template <int Dim>
 inline constexpr double kInertiaFactor = Dim == 2 ? 0.5 : 0.4;
 
 /// Composes a simulation whose time step is the safe one divided by `refinement`.
-template <int Dim, class Law, class N = AllPairs<Dim>, class Motion = VelocityVerlet<Dim>>
+template <int Dim, class Law, class N = AllPairs<Dim>, class Motion = VelocityVerlet>
 Sim<Dim, Law, N, Motion> make_sim(const std::vector<Grain<Dim>>& list, const Law& law,
                                   const std::vector<Wall<Dim>>& walls, double refinement,
                                   const Vec<Dim>& gravity = Vec<Dim>::Zero(),

@@ -1,0 +1,456 @@
+#pragma once
+/// @file
+/// The inner loop of a time step: all contacts of a list, several at once.
+///
+/// A law is written over a number type (touch.hpp). Here it is run with Lanes as wide as the machine
+/// allows, chosen at run time; what does not fill the lanes runs with `double`. Forces are always
+/// added in the order of the list, and losses in the same parts, so results do not depend on the
+/// instruction set, bit for bit.
+
+#include <lagrain/cundall_strack.hpp>
+#include <lagrain/hertz.hpp>
+#include <lagrain/hooke.hpp>
+#include <lagrain/law_table.hpp>
+#include <lagrain/neighbourhood.hpp>
+#include <lagrain/pair_table.hpp>
+#include <lagrain/records.hpp>
+#include <lagrain/viscous_friction.hpp>
+#include <lagrain/walls.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace lagrain {
+
+/// What the contacts are computed with. `scalar` is the oracle of the others.
+enum class InstructionSet { scalar, avx2, avx512 };
+
+/// Those that this machine has, the narrowest first; the last is the default.
+const std::vector<InstructionSet>& instruction_sets();
+
+/// What one sweep over contacts adds up.
+struct Tally {
+  double dashpot = 0;   ///< [J]
+  double friction = 0;  ///< [J]
+  double excess = 0;    ///< largest overlap beyond the limit [m]
+
+  Tally& operator+=(const Tally& other) {
+    dashpot += other.dashpot;
+    friction += other.friction;
+    excess = std::max(excess, other.excess);
+    return *this;
+  }
+};
+
+/// The forces of a contact on both its grains, kept for later: to be added to the load of i and
+/// subtracted from that of j.
+template <int Dim, Needs needs>
+struct PairLoad {
+  LoadRecord<Dim, needs> for_i, for_j;
+
+  void give_to_i(LoadRecord<Dim, needs>& load) const {
+    for (std::size_t c = 0; c < load.at.size(); ++c) load.at[c] += for_i.at[c];
+  }
+  void give_to_j(LoadRecord<Dim, needs>& load) const {
+    for (std::size_t c = 0; c < load.at.size(); ++c) load.at[c] -= for_j.at[c];
+  }
+};
+
+/// What all contacts share.
+template <int Dim, class Law>
+struct ContactScene {
+  const GrainRecord<Dim, Law::needs>* grains = nullptr;
+  LoadRecord<Dim, Law::needs>* loads = nullptr;
+  const std::vector<std::uint8_t>* kinds = nullptr;
+  const LawTable<Law>* laws = nullptr;
+  const Wall<Dim>* walls = nullptr;
+  double time_step = 0;        ///< what memories and losses advance by [s]
+  double largest_overlap = 0;  ///< of the smaller radius [-]
+};
+
+template <int Dim, class Law>
+class ContactKernel {
+ public:
+  static constexpr Needs needs = Law::needs;
+  using Memory = typename Law::template Memory<Dim>;
+  using Scene = ContactScene<Dim, Law>;
+  using Load = LoadRecord<Dim, needs>;
+
+  /// @param one_law  all contacts between grains follow the first law of the table
+  ContactKernel(InstructionSet set, bool one_law);
+
+  /// Contacts begin to end of the table: adds their forces to the loads of both grains or, if `out`
+  /// is given, leaves them there, at the places of the contacts in the table.
+  Tally pairs(const Scene& scene, PairTable<Pair, Memory>& table, std::size_t begin,
+              std::size_t end, PairLoad<Dim, needs>* out = nullptr) const {
+    return pairs_(scene, table, begin, end, out);
+  }
+  /// Contacts with walls: adds their forces to the loads, and the opposite to wall_forces, one for
+  /// each wall of the scene.
+  Tally walls(const Scene& scene, PairTable<WallPair, Memory>& table, std::size_t begin,
+              std::size_t end, Vec<Dim>* wall_forces) const {
+    return walls_(scene, table, begin, end, wall_forces);
+  }
+
+ private:
+  using PairSweep = Tally (*)(const Scene&, PairTable<Pair, Memory>&, std::size_t, std::size_t,
+                              PairLoad<Dim, needs>*);
+  using WallSweep = Tally (*)(const Scene&, PairTable<WallPair, Memory>&, std::size_t, std::size_t,
+                              Vec<Dim>*);
+  PairSweep pairs_;
+  WallSweep walls_;
+};
+
+namespace detail {
+
+/// The code of a sweep, for contacts by kLanes<Real> at once. Inlined as a whole into functions for
+/// one instruction set each.
+///
+/// @tparam kOneLaw  all grains are of kind 0: the common case, and the fast one
+template <int Dim, class Law, class Real, bool kOneLaw>
+struct Sweep {
+  static constexpr Needs needs = Law::needs;
+  static constexpr std::size_t kWidth = kLanes<Real>;
+  using Load = LoadRecord<Dim, needs>;
+  using Memory = typename Law::template Memory<Dim, Real>;
+  using Slots = std::array<int, kWidth>;
+
+  /// Losses are added up in as many parts whatever the width, so that every width adds the same
+  /// numbers: contact k of the sweep to part k mod kParts.
+  static constexpr std::size_t kParts = 8;
+  using Parts = std::array<Real, kParts / kWidth>;
+
+  const ContactScene<Dim, Law>& scene;
+  const Law only_law;  // a copy: what is the same for all contacts stays at hand
+  Parts dashpot, friction, excess;
+
+  explicit Sweep(const ContactScene<Dim, Law>& s) : scene(s), only_law(s.laws->between(0, 0)) {
+    dashpot.fill(Real(0));
+    friction.fill(Real(0));
+    excess.fill(Real(0));
+  }
+
+  /// The parts as numbers, part of `parts` by part.
+  static void add_to(std::array<double, kParts>& sums, const Parts& parts) {
+    for (std::size_t k = 0; k < kParts; ++k) {
+      sums[k] += lane(parts[k / kWidth], static_cast<int>(k % kWidth));
+    }
+  }
+
+  template <class P>
+  static Memory read_memory(const PairTable<P, typename Law::template Memory<Dim>>& table,
+                            std::size_t first) {
+    Memory m;
+    if constexpr (Memory::kReals > 0) {
+      for (int r = 0; r < Memory::kReals; ++r) detail::read(m[r], table.part(r) + first);
+    }
+    return m;
+  }
+  template <class P>
+  static void write_memory(PairTable<P, typename Law::template Memory<Dim>>& table,
+                           std::size_t first, const Memory& m) {
+    if constexpr (Memory::kReals > 0) {
+      for (int r = 0; r < Memory::kReals; ++r) detail::write(table.part(r) + first, m[r]);
+    }
+  }
+
+  std::size_t kind(int slot) const {
+    return scene.kinds->empty() ? 0 : (*scene.kinds)[static_cast<std::size_t>(slot)];
+  }
+
+  /// The law's answer where `touching`, zero elsewhere; `partner_kind(k)` is that of lane k.
+  template <class Mask, class PartnerKind>
+  Response<Dim, Real> respond(const Touch<Dim, Real>& touch, const Mask& touching,
+                              const Slots& slot, PartnerKind&& partner_kind, Memory& memory) const {
+    Response<Dim, Real> response;
+    if constexpr (kOneLaw) {
+      response = only_law.respond(touch, memory, scene.time_step);
+    } else {
+      // One law after the other, each for its own lanes.
+      std::array<const Law*, kWidth> law;
+      for (std::size_t k = 0; k < kWidth; ++k) {
+        law[k] = &scene.laws->between(kind(slot[k]), partner_kind(k));
+      }
+      const Memory past = memory;
+      for (std::size_t first = 0; first < kWidth; ++first) {
+        const auto before = law.begin() + static_cast<std::ptrdiff_t>(first);
+        if (std::find(law.begin(), before, law[first]) != before) continue;
+        Memory tried = past;
+        const Response<Dim, Real> answer = law[first]->respond(touch, tried, scene.time_step);
+        const auto own =
+            mask_of<Real>([&](int k) { return law[static_cast<std::size_t>(k)] == law[first]; });
+        for (int d = 0; d < Dim; ++d) {
+          response.force[d] = select(own, answer.force[d], response.force[d]);
+        }
+        response.dashpot_loss = select(own, answer.dashpot_loss, response.dashpot_loss);
+        response.friction_loss = select(own, answer.friction_loss, response.friction_loss);
+        if constexpr (Memory::kReals > 0) {
+          for (int r = 0; r < Memory::kReals; ++r) memory[r] = select(own, tried[r], memory[r]);
+        }
+      }
+    }
+    for (int d = 0; d < Dim; ++d) response.force[d] = only_if(touching, response.force[d]);
+    response.dashpot_loss = only_if(touching, response.dashpot_loss);
+    response.friction_loss = only_if(touching, response.friction_loss);
+    if constexpr (Memory::kReals > 0) {
+      for (int r = 0; r < Memory::kReals; ++r) memory[r] = only_if(touching, memory[r]);
+    }
+    return response;
+  }
+
+  void note(const Response<Dim, Real>& response, const Real& beyond, std::size_t part) {
+    dashpot[part] += response.dashpot_loss;
+    friction[part] += response.friction_loss;
+    excess[part] = larger(excess[part], beyond);
+  }
+
+  /// A load of each lane as four columns and, in space with spin, four more.
+  struct LoadColumns {
+    static constexpr bool kTwice = Load::kSize == 8;
+    std::array<Real, 4> first, second;
+
+    LoadColumns(const Vec<Dim, Real>& force, const SpinVec<Dim, Real>& turn) {
+      first.fill(Real(0));
+      second.fill(Real(0));
+      for (std::size_t d = 0; d < Dim; ++d) first[d] = force[static_cast<int>(d)];
+      if constexpr (needs.spin && kTwice) {
+        for (std::size_t d = 0; d < 3; ++d) second[d] = turn[static_cast<int>(d)];
+      } else if constexpr (needs.spin) {
+        first[Load::kTorque] = turn[0];
+      }
+    }
+  };
+  /// The same as rows, one for each lane.
+  struct LoadRows {
+    detail::Rows<Real> first, second;
+
+    explicit LoadRows(const LoadColumns& columns) : first(columns.first), second(columns.second) {}
+    void add_to(Load& load, std::size_t k) const {
+      first.add_to(load.at.data(), k);
+      if constexpr (LoadColumns::kTwice) second.add_to(&load.at[4], k);
+    }
+    void subtract_from(Load& load, std::size_t k) const {
+      first.subtract_from(load.at.data(), k);
+      if constexpr (LoadColumns::kTwice) second.subtract_from(&load.at[4], k);
+    }
+  };
+
+  /// Contacts first, first + 1, ... of the table, one per lane; their losses go to `part`.
+  void pairs(PairTable<Pair, typename Law::template Memory<Dim>>& table, std::size_t first,
+             std::size_t part, PairLoad<Dim, needs>* out) {
+    Slots i, j;
+    for (std::size_t k = 0; k < kWidth; ++k) {
+      i[k] = table.pairs()[first + k].i;
+      j[k] = table.pairs()[first + k].j;
+    }
+    const auto body_i = read_bodies<Real>(scene.grains, i), body_j = read_bodies<Real>(scene.grains, j);
+    const auto [touching, touch] = touch_of(body_i, body_j);
+    if (!any(touching)) {
+      write_memory(table, first, Memory{});
+      if (out != nullptr) std::fill_n(out + first, kWidth, PairLoad<Dim, needs>{});
+      return;
+    }
+    Memory memory = read_memory(table, first);
+    const Response<Dim, Real> response =
+        respond(touch, touching, i, [&](std::size_t k) { return kind(j[k]); }, memory);
+    write_memory(table, first, memory);
+    const Real limit = scene.largest_overlap * smaller(body_i.radius, body_j.radius);
+    note(response, only_if(touching, Real(touch.overlap - limit)), part);
+
+    SpinVec<Dim, Real> turn_i, turn_j;
+    if constexpr (needs.spin) {
+      // Both forces act at one point, so that angular momentum is conserved exactly.
+      const Real half = 0.5 * touch.overlap;
+      const SpinVec<Dim, Real> couple = torque<Real>(touch.normal, response.force);
+      turn_i = (half - body_i.radius) * couple;
+      turn_j = (body_j.radius - half) * couple;
+    }
+    const LoadRows for_i(LoadColumns(response.force, turn_i));
+    const LoadRows for_j(LoadColumns(response.force, turn_j));
+    if (out != nullptr) {
+      for (std::size_t k = 0; k < kWidth; ++k) {
+        out[first + k] = {};
+        for_i.add_to(out[first + k].for_i, k);
+        for_j.add_to(out[first + k].for_j, k);
+      }
+      return;
+    }
+    for (std::size_t k = 0; k < kWidth; ++k) {
+      for_i.add_to(scene.loads[i[k]], k);
+      for_j.subtract_from(scene.loads[j[k]], k);
+    }
+  }
+
+  /// The same with walls.
+  void walls(PairTable<WallPair, typename Law::template Memory<Dim>>& table, std::size_t first,
+             std::size_t part, Vec<Dim>* wall_forces) {
+    Slots i;
+    Real distance, mass;
+    Vec<Dim, Real> normal, wall_velocity;
+    for (std::size_t k = 0; k < kWidth; ++k) {
+      const auto [slot, w] = table.pairs()[first + k];
+      const int at = static_cast<int>(k);
+      const Wall<Dim>& wall = scene.walls[w];
+      const auto foot = wall.foot(scene.grains[slot].position());
+      i[k] = slot;
+      set_lane(distance, at, foot.distance);
+      set_lane(mass, at, scene.loads[slot].at[Load::kMass]);
+      for (int d = 0; d < Dim; ++d) {
+        set_lane(normal[d], at, foot.normal[d]);
+        set_lane(wall_velocity[d], at, wall.velocity[d]);
+      }
+    }
+    const auto body = read_bodies<Real>(scene.grains, i);
+    const auto [touching, touch] = touch_of_wall(body, mass, distance, normal, wall_velocity);
+    if (!any(touching)) return write_memory(table, first, Memory{});
+
+    Memory memory = read_memory(table, first);
+    const auto wall_kind = [&](std::size_t k) {
+      const int w = table.pairs()[first + k].wall;
+      return static_cast<std::size_t>(scene.walls[w].kind);
+    };
+    const Response<Dim, Real> response = respond(touch, touching, i, wall_kind, memory);
+    write_memory(table, first, memory);
+    note(response, only_if(touching, Real(touch.overlap - scene.largest_overlap * body.radius)),
+         part);
+
+    SpinVec<Dim, Real> turn;
+    if constexpr (needs.spin) {
+      turn = -distance * torque<Real>(normal, response.force);
+    }
+    const LoadRows push(LoadColumns(response.force, turn));
+    for (std::size_t k = 0; k < kWidth; ++k) {
+      push.add_to(scene.loads[i[k]], k);
+      wall_forces[table.pairs()[first + k].wall] -=
+          Vec<Dim>::NullaryExpr([&](Eigen::Index d) { return lane(response.force[d], static_cast<int>(k)); });
+    }
+  }
+};
+
+/// Contacts begin to end through `contact(sweep, first, part)`: as many at once as there are lanes,
+/// the rest one by one.
+template <int Dim, class Law, class Real, bool kOneLaw, class Contact>
+Tally sweep_over(const ContactScene<Dim, Law>& scene, std::size_t begin, std::size_t end,
+                 Contact&& contact) {
+  using Wide = Sweep<Dim, Law, Real, kOneLaw>;
+  using Single = Sweep<Dim, Law, double, kOneLaw>;
+  std::array<double, Wide::kParts> dashpot{}, friction{};
+  Tally tally;
+  const auto collect = [&](const auto& sweep) {
+    sweep.add_to(dashpot, sweep.dashpot);
+    sweep.add_to(friction, sweep.friction);
+    std::array<double, Wide::kParts> excess{};
+    sweep.add_to(excess, sweep.excess);
+    tally.excess = std::max(tally.excess, *std::max_element(excess.begin(), excess.end()));
+  };
+  std::size_t first = begin;
+  Wide wide(scene);
+  for (; first + kLanes<Real> <= end; first += kLanes<Real>) {
+    contact(wide, first, (first - begin) % Wide::kParts / kLanes<Real>);
+  }
+  collect(wide);
+  if (first < end) {
+    Single single(scene);
+    for (; first < end; ++first) contact(single, first, (first - begin) % Wide::kParts);
+    collect(single);
+  }
+  for (std::size_t k = 0; k < Wide::kParts; ++k) {
+    tally.dashpot += dashpot[k];
+    tally.friction += friction[k];
+  }
+  return tally;
+}
+
+/// The sweeps for one number type.
+template <int Dim, class Law, class Real>
+struct Sweeps {
+  using Scene = ContactScene<Dim, Law>;
+  using Memory = typename Law::template Memory<Dim>;
+
+  template <bool kOneLaw>
+  static Tally pairs(const Scene& scene, PairTable<Pair, Memory>& table, std::size_t begin,
+                     std::size_t end, PairLoad<Dim, Law::needs>* out) {
+    return sweep_over<Dim, Law, Real, kOneLaw>(
+        scene, begin, end, [&](auto& sweep, std::size_t first, std::size_t part) {
+          sweep.pairs(table, first, part, out);
+        });
+  }
+  static Tally walls(const Scene& scene, PairTable<WallPair, Memory>& table, std::size_t begin,
+                     std::size_t end, Vec<Dim>* wall_forces) {
+    return sweep_over<Dim, Law, Real, false>(
+        scene, begin, end, [&](auto& sweep, std::size_t first, std::size_t part) {
+          sweep.walls(table, first, part, wall_forces);
+        });
+  }
+};
+
+/// The same functions compiled for one instruction set, everything inlined.
+#if defined(__x86_64__)
+#define LAGRAIN_FOR_AVX2 [[gnu::target("avx2"), gnu::flatten]]
+#define LAGRAIN_FOR_AVX512 [[gnu::target("avx512f,avx512dq,avx512vl"), gnu::flatten]]
+#else
+#define LAGRAIN_FOR_AVX2
+#define LAGRAIN_FOR_AVX512
+#endif
+#define LAGRAIN_COMPILED_SWEEPS(Name, Attributes, Real)                                       \
+  template <int Dim, class Law>                                                               \
+  struct Name {                                                                               \
+    using S = Sweeps<Dim, Law, Real>;                                                         \
+    using Memory = typename S::Memory;                                                        \
+    template <bool kOneLaw>                                                                   \
+    Attributes static Tally pairs(const typename S::Scene& scene,                             \
+                                  PairTable<Pair, Memory>& table, std::size_t begin,          \
+                                  std::size_t end, PairLoad<Dim, Law::needs>* out) {          \
+      return S::template pairs<kOneLaw>(scene, table, begin, end, out);                       \
+    }                                                                                         \
+    Attributes static Tally walls(const typename S::Scene& scene,                             \
+                                  PairTable<WallPair, Memory>& table, std::size_t begin,      \
+                                  std::size_t end, Vec<Dim>* wall_forces) {                   \
+      return S::walls(scene, table, begin, end, wall_forces);                                 \
+    }                                                                                         \
+  }
+LAGRAIN_COMPILED_SWEEPS(ScalarSweeps, [[gnu::flatten]], double);
+LAGRAIN_COMPILED_SWEEPS(Avx2Sweeps, LAGRAIN_FOR_AVX2, Lanes<4>);
+LAGRAIN_COMPILED_SWEEPS(Avx512Sweeps, LAGRAIN_FOR_AVX512, Lanes<8>);
+#undef LAGRAIN_COMPILED_SWEEPS
+#undef LAGRAIN_FOR_AVX2
+#undef LAGRAIN_FOR_AVX512
+
+}  // namespace detail
+
+template <int Dim, class Law>
+ContactKernel<Dim, Law>::ContactKernel(InstructionSet set, bool one_law) {
+  const auto choose = [&]<class S>(S) {
+    pairs_ = one_law ? &S::template pairs<true> : &S::template pairs<false>;
+    walls_ = &S::walls;
+  };
+  switch (set) {
+    case InstructionSet::scalar:
+      choose(detail::ScalarSweeps<Dim, Law>{});
+      return;
+    case InstructionSet::avx2:
+      choose(detail::Avx2Sweeps<Dim, Law>{});
+      return;
+    case InstructionSet::avx512:
+      choose(detail::Avx512Sweeps<Dim, Law>{});
+      return;
+  }
+}
+
+extern template class ContactKernel<2, LinearSpring>;
+extern template class ContactKernel<2, Hertz>;
+extern template class ContactKernel<2, ViscousFriction<LinearSpring>>;
+extern template class ContactKernel<2, ViscousFriction<Hertz>>;
+extern template class ContactKernel<2, CundallStrack<LinearSpring>>;
+extern template class ContactKernel<2, CundallStrack<Hertz>>;
+extern template class ContactKernel<3, LinearSpring>;
+extern template class ContactKernel<3, Hertz>;
+extern template class ContactKernel<3, ViscousFriction<LinearSpring>>;
+extern template class ContactKernel<3, ViscousFriction<Hertz>>;
+extern template class ContactKernel<3, CundallStrack<LinearSpring>>;
+extern template class ContactKernel<3, CundallStrack<Hertz>>;
+
+}  // namespace lagrain

@@ -1,0 +1,82 @@
+#pragma once
+/// @file
+/// Listed pairs and what their contacts remember.
+
+#include <lagrain/contact_law.hpp>
+#include <lagrain/neighbourhood.hpp>
+
+#include <compare>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace lagrain {
+
+/// A grain and a wall near it.
+struct WallPair {
+  int i = 0;
+  int wall = 0;
+  auto operator<=>(const WallPair&) const = default;
+};
+
+/// Sorted pairs and, where the law remembers, one memory each. History survives a refresh by
+/// merging two sorted lists; without memory nothing is stored and nothing merged.
+template <class P, class Memory>
+class PairTable {
+ public:
+  static constexpr int kReals = Memory::kReals;
+
+  const std::vector<P>& pairs() const { return pairs_; }
+  std::size_t size() const { return pairs_.size(); }
+
+  Memory memory(std::size_t k) const {
+    Memory m;
+    if constexpr (kReals > 0) {
+      for (int r = 0; r < kReals; ++r) m[r] = part(r)[k];
+    }
+    return m;
+  }
+  void set_memory(std::size_t k, const Memory& m) {
+    if constexpr (kReals > 0) {
+      for (int r = 0; r < kReals; ++r) part(r)[k] = m[r];
+    }
+  }
+  /// Number r of all memories, side by side.
+  double* part(int r) { return memory_.data() + static_cast<std::size_t>(r) * pairs_.size(); }
+  const double* part(int r) const {
+    return memory_.data() + static_cast<std::size_t>(r) * pairs_.size();
+  }
+
+  /// Puts `fresh` (sorted) in place of the pairs, with these memories.
+  void assign(std::vector<P> fresh, const std::vector<Memory>& memories) {
+    pairs_ = std::move(fresh);
+    memory_.assign(pairs_.size() * kReals, 0.0);
+    for (std::size_t k = 0; k < pairs_.size(); ++k) set_memory(k, memories[k]);
+  }
+
+  /// Puts `fresh` (sorted) in place of the pairs, keeping the memory of those that stay; the old
+  /// pairs are left in `fresh`.
+  void replace(std::vector<P>& fresh) {
+    if constexpr (kReals > 0) {
+      fresh_memory_.assign(fresh.size() * kReals, 0.0);
+      std::size_t old = 0;
+      for (std::size_t k = 0; k < fresh.size(); ++k) {
+        while (old < pairs_.size() && pairs_[old] < fresh[k]) ++old;
+        if (old == pairs_.size()) break;
+        if (pairs_[old] != fresh[k]) continue;
+        for (std::size_t r = 0; r < kReals; ++r) {
+          fresh_memory_[r * fresh.size() + k] = memory_[r * pairs_.size() + old];
+        }
+      }
+      memory_.swap(fresh_memory_);
+    }
+    pairs_.swap(fresh);
+  }
+
+ private:
+  std::vector<P> pairs_;
+  std::vector<double> memory_;        // kReals rows of size() numbers
+  std::vector<double> fresh_memory_;  // scratch
+};
+
+}  // namespace lagrain
