@@ -47,6 +47,7 @@ void Triangulation<3>::build(const Columns<3>& sites, const Eigen::VectorXd& wei
   // A note that says "present"; rebuild() replaces it.
   for (int i = 0; i < n; ++i) topology_.set_corner_of(i, -2);
   rebuild();
+  edges_.settle();
   before_ = sites_;
 }
 
@@ -67,7 +68,7 @@ UpdateReport Triangulation<3>::move(std::span<const int> moved, const Columns<3>
     sites_[index(id)] = place;
     moved_.push_back(id);
   }
-  if (moved_.empty()) return report_;
+  if (moved_.empty()) return finish();
   if (tiny()) {
     rebuild();
   } else {
@@ -106,7 +107,6 @@ UpdateReport Triangulation<3>::insert(int id, const Vec<3>& position, double wei
   } else if (!insert_visible(id)) {
     hidden_.push_back(id);
   }
-  edges_known_ = false;
   return finish();
 }
 
@@ -117,7 +117,7 @@ UpdateReport Triangulation<3>::remove(int id) {
   if (topology_.corner_of(id) <= -2) {
     topology_.set_corner_of(id, Topology3::kNone);
     std::erase(hidden_, id);
-    return report_;
+    return finish();
   }
   touched_.clear();
   hull_touched_ = false;
@@ -136,7 +136,7 @@ UpdateReport Triangulation<3>::remove(int id) {
 
 UpdateReport Triangulation<3>::finish() {
   std::sort(hidden_.begin(), hidden_.end());
-  if (report_.flips + report_.extracted + report_.reinserted > 0) edges_known_ = false;
+  edges_.settle();
 #ifdef LAGRAIN_AUDIT
   if (const auto defects = audit(); !defects.empty()) {
     throw std::logic_error("Triangulation<3>: " + defects.front().sentence);

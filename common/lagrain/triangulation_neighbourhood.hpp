@@ -169,29 +169,18 @@ class TriangulationNeighbourhood {
     list.erase(std::unique(list.begin(), list.end()), list.end());
   }
 
-  /// The edges of T within reach, in increasing order: a counting sort by the first end, then short
-  /// sorts.
+  /// The edges of T within reach; T has them in order.
   void collect_near_edges(const Columns<Dim>& x, const Eigen::VectorXd& radius,
                           const Eigen::VectorXd& margin, std::vector<Pair>& pairs) {
-    unsorted_.clear();
-    row_end_.assign(static_cast<std::size_t>(size()) + 1, 0);
-    t_.for_each_edge([&](int a, int b) {
-      if (!within_reach<Dim>(x, radius, margin, a, b)) return;
-      unsorted_.push_back({a, b});
-      ++row_end_[static_cast<std::size_t>(a) + 1];
-    });
-    for (std::size_t i = 1; i < row_end_.size(); ++i) row_end_[i] += row_end_[i - 1];
-    pairs.resize(unsorted_.size());
-    // row_end_[i] starts as the beginning of row i and becomes its end.
-    for (const Pair& pair : unsorted_) {
-      pairs[static_cast<std::size_t>(row_end_[static_cast<std::size_t>(pair.i)]++)] = pair;
+    const auto edges = t_.edges();
+    pairs.resize(edges.size());
+    std::size_t count = 0;
+    for (const auto& [i, j] : edges) {
+      // Written in any case and counted if near: cheaper than a branch that nobody can predict.
+      pairs[count] = {i, j};
+      count += within_reach<Dim>(x, radius, margin, i, j);
     }
-    std::ptrdiff_t begin = 0;
-    for (int i = 0; i < size(); ++i) {
-      const std::ptrdiff_t end = row_end_[static_cast<std::size_t>(i)];
-      std::sort(pairs.begin() + begin, pairs.begin() + end);
-      begin = end;
-    }
+    pairs.resize(count);
   }
 
   /// Every pair that T may lack has an end that lies on a failed edge or is hidden: look at all
@@ -223,8 +212,6 @@ class TriangulationNeighbourhood {
 
   std::vector<int> moved_;
   std::vector<int> failed_;
-  std::vector<Pair> unsorted_;
-  std::vector<std::ptrdiff_t> row_end_;
 };
 
 }  // namespace lagrain
