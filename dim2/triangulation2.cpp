@@ -42,7 +42,6 @@ void Triangulation<2>::build(const Columns<2>& sites, const Eigen::VectorXd& wei
   for (int i = 0; i < n; ++i) topology_.set_corner_of(i, -2);
   present_ = n;
   rebuild();
-  edges_.settle();
   before_ = sites_;
 }
 

@@ -47,7 +47,6 @@ void Triangulation<3>::build(const Columns<3>& sites, const Eigen::VectorXd& wei
   // A note that says "present"; rebuild() replaces it.
   for (int i = 0; i < n; ++i) topology_.set_corner_of(i, -2);
   rebuild();
-  edges_.settle();
   before_ = sites_;
 }
 

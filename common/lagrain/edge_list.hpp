@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace lagrain {
@@ -23,10 +22,6 @@ class EdgeList {
   using Edge = std::array<int, 2>;  ///< two sites, the lower id first
 
   std::span<const Edge> all() const { return edges_; }
-  /// The edges that the last settled update made.
-  std::span<const Edge> made() const {
-    return all_made_ ? std::span<const Edge>(edges_) : std::span<const Edge>(made_);
-  }
 
   /// Forgets everything: the triangulation is being built anew.
   void clear() {
@@ -52,7 +47,7 @@ class EdgeList {
       std::sort(row, row_end);
       std::for_each(row, std::unique(row, row_end), [&](int j) { edges_.push_back({i, j}); });
     }
-    live_ = found_ = true;
+    live_ = true;
     notes_.clear();
   }
 
@@ -79,9 +74,7 @@ class EdgeList {
 
   /// Ends an update.
   void settle() {
-    made_.clear();
-    all_made_ = std::exchange(found_, false);
-    if (all_made_ || notes_.empty()) return;
+    if (notes_.empty()) return;
     std::sort(notes_.begin(), notes_.end());
     next_.clear();
     next_.reserve(edges_.size() + notes_.size());
@@ -97,7 +90,6 @@ class EdgeList {
       old = place;
       if (count > 0) {
         next_.push_back(edge);
-        made_.push_back(edge);
       } else {
         ++old;
       }
@@ -116,11 +108,9 @@ class EdgeList {
     notes_.push_back((i << 32 | j) << 1 | gone);
   }
 
-  std::vector<Edge> edges_, next_, made_;
+  std::vector<Edge> edges_, next_;
   std::vector<std::uint64_t> notes_;
   bool live_ = false;
-  bool found_ = false;     // since the last update
-  bool all_made_ = false;  // by the last update
 };
 
 }  // namespace lagrain

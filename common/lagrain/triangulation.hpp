@@ -49,9 +49,8 @@ concept RegularTriangulation = requires(T t, const T ct, std::span<const int> mo
   t.build(sites, weights);
   { t.move(moved, sites, weights) } -> std::same_as<UpdateReport>;
   ct.for_each_edge(visit);
-  // Sorted; those that the last build or move made.
+  // Sorted.
   { ct.edges() } -> std::same_as<std::span<const EdgeList::Edge>>;
-  { ct.made_edges() } -> std::same_as<std::span<const EdgeList::Edge>>;
   { ct.hidden() } -> std::convertible_to<std::span<const int>>;
   { ct.size() } -> std::convertible_to<int>;
 };

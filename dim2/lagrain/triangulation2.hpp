@@ -98,8 +98,6 @@ class Triangulation<2> {
 
   /// The finite edges, sorted.
   std::span<const EdgeList::Edge> edges() const { return edges_.all(); }
-  /// Those that the last public call made; sorted, too.
-  std::span<const EdgeList::Edge> made_edges() const { return edges_.made(); }
 
   /// Calls f(i, j) once for each finite edge, i < j, in increasing order.
   template <class F>

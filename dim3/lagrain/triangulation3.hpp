@@ -113,8 +113,6 @@ class Triangulation<3> {
 
   /// The edges, sorted.
   std::span<const EdgeList::Edge> edges() const { return edges_.all(); }
-  /// Those that the last public call made; sorted, too.
-  std::span<const EdgeList::Edge> made_edges() const { return edges_.made(); }
 
   /// Calls f(i, j) once for each edge, i < j, in increasing order.
   template <class F>
