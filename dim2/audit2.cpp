@@ -74,6 +74,11 @@ std::vector<Triangulation<2>::Defect> Triangulation<2>::audit() const {
     if (topology_.infinite(t) || conflict(t, id))
       report(t, {id, -1, -1}, "the hidden site has a cell");
   }
+  EdgeList found;
+  find_edges(found);
+  if (!std::ranges::equal(found.all(), edges())) {
+    report(-1, {-1, -1, -1}, "the list of edges is out of date");
+  }
   return defects;
 }
 

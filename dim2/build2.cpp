@@ -43,6 +43,7 @@ void Triangulation<2>::rebuild() {
     if (contains(id)) present.push_back(id);
   }
   topology_.clear(size());
+  edges_.clear();
   hidden_.clear();
   line_.clear();
   last_ = 0;
@@ -51,6 +52,20 @@ void Triangulation<2>::rebuild() {
   } else {
     rebuild_plane(present);
   }
+  find_edges(edges_);
+}
+
+void Triangulation<2>::find_edges(EdgeList& list) const {
+  list.find(size(), [&](auto&& f) {
+    for (std::size_t k = 1; k < line_.size(); ++k) f(line_[k - 1], line_[k]);
+    for (int t = 0; t < topology_.slots(); ++t) {
+      const auto v = topology_.vertices(t);
+      // An edge runs once each way; negative vertices (infinite, or of a dead slot) drop out.
+      if (v[0] >= 0 && v[0] < v[1]) f(v[0], v[1]);
+      if (v[1] >= 0 && v[1] < v[2]) f(v[1], v[2]);
+      if (v[2] >= 0 && v[2] < v[0]) f(v[2], v[0]);
+    }
+  });
 }
 
 /// The lower hull of the lifted sites by one scan along the line.

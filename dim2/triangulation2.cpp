@@ -62,7 +62,7 @@ UpdateReport Triangulation<2>::move(std::span<const int> moved, const Columns<2>
     sites_[index(id)] = place;
     moved_.push_back(id);
   }
-  if (moved_.empty()) return report_;
+  if (moved_.empty()) return finish();
   if (tiny()) {
     rebuild();
   } else {
@@ -111,7 +111,7 @@ UpdateReport Triangulation<2>::remove(int id) {
   if (topology_.corner_of(id) <= -2) {
     topology_.set_corner_of(id, Topology2::kNone);
     std::erase(hidden_, id);
-    return report_;
+    return finish();
   }
   if (tiny()) {
     topology_.set_corner_of(id, Topology2::kNone);
@@ -133,6 +133,7 @@ UpdateReport Triangulation<2>::remove(int id) {
 
 UpdateReport Triangulation<2>::finish() {
   std::sort(hidden_.begin(), hidden_.end());
+  edges_.settle();
 #ifdef LAGRAIN_AUDIT
   if (const auto defects = audit(); !defects.empty()) {
     throw std::logic_error("Triangulation<2>: " + defects.front().sentence);

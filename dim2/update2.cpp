@@ -75,9 +75,21 @@ void Triangulation<2>::push_triangle(int triangle) {
 }
 
 void Triangulation<2>::flip(int corner) {
+  edges_.note_gone(topology_.source(corner), topology_.target(corner));
   const int other = topology_.flip(corner);
+  edges_.note_made(topology_.vertex(corner), topology_.vertex(other));
   ++report_.flips;
   if (topology_.infinite(corner >> 2) || topology_.infinite(other >> 2)) hull_touched_ = true;
+}
+
+/// Takes a site of degree three out of the topology; returns the remaining triangle.
+int Triangulation<2>::take_out_degree3(int site) {
+  topology_.for_each_corner(site,
+                            [&](int corner) { edges_.note_gone(site, topology_.source(corner)); });
+  const int left = topology_.remove_degree3(site);
+  ++report_.flips;
+  if (topology_.infinite(left)) hull_touched_ = true;
+  return left;
 }
 
 /// Flips until the queue is empty; edges that cannot be flipped end in stuck_.
@@ -150,9 +162,7 @@ bool Triangulation<2>::resolve(int corner) {
     flip(corner);  // leaves a flat triangle for the time of one statement
   }
   const int hint = finite_neighbour(site);
-  const int left = topology_.remove_degree3(site);
-  ++report_.flips;
-  if (topology_.infinite(left)) hull_touched_ = true;
+  const int left = take_out_degree3(site);
   hide(site, hint);
   push_triangle(left);
   if (degree == 4) {
@@ -263,9 +273,7 @@ bool Triangulation<2>::remove_by_flips(int site, const Site2* places) {
     if (beyond && on_hull) return false;
   }
   topology_.set_corner_of(site, spokes_[0]);
-  touched_.push_back(topology_.remove_degree3(site));
-  if (topology_.infinite(touched_.back())) hull_touched_ = true;
-  ++report_.flips;
+  touched_.push_back(take_out_degree3(site));
   return true;
 }
 
@@ -491,7 +499,13 @@ bool Triangulation<2>::insert_visible(int site) {
       site_epoch_[index(id)] = epoch;
       ring_.push_back(id);
     }
+    for (int corner = 4 * triangle; corner < 4 * triangle + 3; ++corner) {
+      const int twin = topology_.twin(corner);
+      if (corner > twin || topology_.mark(twin >> 2) != epoch) continue;
+      edges_.note_gone(topology_.source(corner), topology_.target(corner));
+    }
   }
+  for (const int corner : rim_) edges_.note_made(site, topology_.source(corner));
   topology_.star(site, hole_, rim_);
   for (const int id : ring_) hide(id, site);
   last_ = site;

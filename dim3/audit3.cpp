@@ -98,10 +98,10 @@ std::vector<Triangulation<3>::Defect> Triangulation<3>::audit() const {
     }
   }
   // The list of edges, against the cells.
-  if (edges_known_) {
-    const auto known = edges_;
-    find_edges();
-    if (known != edges_) report(-1, kNobody, "the list of edges is out of date");
+  EdgeList found;
+  find_edges(found);
+  if (!std::ranges::equal(found.all(), edges())) {
+    report(-1, kNobody, "the list of edges is out of date");
   }
   return defects;
 }

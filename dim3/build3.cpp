@@ -63,6 +63,7 @@ void Triangulation<3>::rebuild() {
   if (large) sort_spatially(present, sites_, true);
   topology_.clear(size() + 3);
   topology_.reserve_cells(7 * present.size());
+  edges_.clear();
   hidden_.clear();
   insert_all(present, nullptr);
   if (large) {
@@ -71,6 +72,19 @@ void Triangulation<3>::rebuild() {
   }
   choose_middle_at_rest();
   std::sort(hidden_.begin(), hidden_.end());
+  find_edges(edges_);
+}
+
+void Triangulation<3>::find_edges(EdgeList& list) const {
+  list.find(size_, [&](auto&& f) {
+    for (int t = 0; t < topology_.slots(); ++t) {
+      const Quad& v = topology_.vertices(t);
+      for (const auto& [k, l] : kEdges) {
+        const int i = v[index(k)], j = v[index(l)];
+        if ((i | j) >= 0 && std::max(i, j) < size_) f(i, j);
+      }
+    }
+  });
 }
 
 /// Puts the cells into memory in the order of their first site, so that what passes over all of
@@ -115,7 +129,6 @@ void Triangulation<3>::insert_all(std::span<const int> order, const Site3* away)
             : orientation(at(simplex[0]), at(simplex[1]), at(simplex[2]), at(id)) != 0;
     if (raises) simplex[index(++dimension_)] = id;
   }
-  edges_known_ = false;
   if (dimension_ < 0) return;
   if (dimension_ < 3) place_auxiliaries(simplex, away);
   if (orientation(at(simplex[0]), at(simplex[1]), at(simplex[2]), at(simplex[3])) < 0) {
@@ -230,6 +243,7 @@ bool Triangulation<3>::insert_visible(int site) {
   for (const int corner : rim_) {
     for (const int i : Topology3::kFacet[corner & 3]) note(topology_.vertex((corner & ~3) + i), 2);
   }
+  note_edges_of_insertion(site);
   topology_.fill_from(site, hole_, rim_);
   for (const int v : cavity_sites_) {
     if (site_note_[index(v)] == 1) hide(v, site);
@@ -237,6 +251,21 @@ bool Triangulation<3>::insert_visible(int site) {
   }
   last_ = site;
   return true;
+}
+
+/// Of a site that will be joined to rim_ in place of hole_.
+void Triangulation<3>::note_edges_of_insertion(int site) {
+  const std::size_t first_note = edges_.mark();
+  for (const int cell : hole_) note_edges_gone(cell);
+  for (const int corner : rim_) {
+    const auto& f = Topology3::kFacet[corner & 3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int v = topology_.vertex((corner & ~3) + f[k]);
+      edges_.note_made(v, topology_.vertex((corner & ~3) + f[(k + 1) % 3]));
+      edges_.note_made(site, v);
+    }
+  }
+  edges_.count_once(first_note);
 }
 
 // ---- Cavities ----------------------------------------------------------------------------------
@@ -345,7 +374,9 @@ bool Triangulation<3>::refill(std::span<const int> hole, std::span<const int> si
   }
 
   // Copy the inside.
+  const std::size_t first_note = edges_.mark();
   for (const int cell : hole) {
+    note_edges_gone(cell);
     if (topology_.infinite(cell)) hull_touched_ = true;
     topology_.release(cell);
   }
@@ -355,6 +386,7 @@ bool Triangulation<3>::refill(std::span<const int> hole, std::span<const int> si
     for (int& v : quad) v = v < 0 ? v : sites[index(v)];
     pending_[index(cell)] = topology_.add(quad);
     touched_.push_back(pending_[index(cell)]);
+    note_edges_made(touched_.back());
     if (topology_.infinite(touched_.back())) hull_touched_ = true;
   }
   for (const int cell : inside_) {
@@ -368,7 +400,7 @@ bool Triangulation<3>::refill(std::span<const int> hole, std::span<const int> si
     topology_.link(4 * pending_[index(facet.inside >> 2)] + (facet.inside & 3), facet.outside);
   }
   for (const int k : small.hidden_) hide(sites[index(k)], sites[index(facets_[0].sites[2])]);
-  edges_known_ = false;
+  edges_.count_once(first_note);
   return true;
 }
 

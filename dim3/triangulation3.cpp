@@ -67,7 +67,7 @@ UpdateReport Triangulation<3>::move(std::span<const int> moved, const Columns<3>
     sites_[index(id)] = place;
     moved_.push_back(id);
   }
-  if (moved_.empty()) return report_;
+  if (moved_.empty()) return finish();
   if (tiny()) {
     rebuild();
   } else {
@@ -106,7 +106,6 @@ UpdateReport Triangulation<3>::insert(int id, const Vec<3>& position, double wei
   } else if (!insert_visible(id)) {
     hidden_.push_back(id);
   }
-  edges_known_ = false;
   return finish();
 }
 
@@ -117,7 +116,7 @@ UpdateReport Triangulation<3>::remove(int id) {
   if (topology_.corner_of(id) <= -2) {
     topology_.set_corner_of(id, Topology3::kNone);
     std::erase(hidden_, id);
-    return report_;
+    return finish();
   }
   touched_.clear();
   hull_touched_ = false;
@@ -136,7 +135,7 @@ UpdateReport Triangulation<3>::remove(int id) {
 
 UpdateReport Triangulation<3>::finish() {
   std::sort(hidden_.begin(), hidden_.end());
-  if (report_.flips + report_.extracted + report_.reinserted > 0) edges_known_ = false;
+  edges_.settle();
 #ifdef LAGRAIN_AUDIT
   if (const auto defects = audit(); !defects.empty()) {
     throw std::logic_error("Triangulation<3>: " + defects.front().sentence);

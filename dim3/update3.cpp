@@ -121,48 +121,16 @@ int Triangulation<3>::finite_neighbour(int site) const {
 /// @pre `vertices` is empty
 void Triangulation<3>::collect_vertices(std::span<const int> corners,
                                         std::vector<int>& vertices) const {
-  edge_note_.resize(sites_.size());
+  vertex_note_.resize(sites_.size());
   for (const int corner : corners) {
     for (const int v : topology_.vertices(corner >> 2)) {
-      if (v < 0 || edge_note_[index(v)] != 0) continue;
-      edge_note_[index(v)] = 1;
+      if (v < 0 || vertex_note_[index(v)] != 0) continue;
+      vertex_note_[index(v)] = 1;
       vertices.push_back(v);
     }
   }
-  for (const int v : vertices) edge_note_[index(v)] = 0;
+  for (const int v : vertices) vertex_note_[index(v)] = 0;
   std::sort(vertices.begin(), vertices.end());
-}
-
-/// Lists the edges: those of all cells, sorted by the first end, each once.
-void Triangulation<3>::find_edges() const {
-  constexpr int kEdge[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
-  std::vector<int> end(index(size_) + 2, 0);
-  const auto for_each_of_a_cell = [&](auto&& f) {
-    for (int t = 0; t < topology_.slots(); ++t) {
-      const Quad& v = topology_.vertices(t);
-      for (const auto& [k, l] : kEdge) {
-        const int i = std::min(v[index(k)], v[index(l)]), j = std::max(v[index(k)], v[index(l)]);
-        if (i >= 0 && j < size_) f(i, j);
-      }
-    }
-  };
-  for_each_of_a_cell([&](int i, int) { ++end[index(i) + 2]; });
-  for (std::size_t i = 2; i < end.size(); ++i) end[i] += end[i - 1];
-  std::vector<int> other(index(end.back()));
-  for_each_of_a_cell([&](int i, int j) { other[index(end[index(i) + 1]++)] = j; });
-
-  edges_.clear();
-  edge_note_.assign(sites_.size(), 0);
-  for (int i = 0; i < size_; ++i) {
-    for (int k = end[index(i)]; k < end[index(i) + 1]; ++k) {
-      int& note = edge_note_[index(other[index(k)])];
-      if (note == i + 1) continue;
-      note = i + 1;
-      edges_.push_back({i, other[index(k)]});
-    }
-  }
-  std::fill(edge_note_.begin(), edge_note_.end(), 0);
-  edges_known_ = true;
 }
 
 // ---- Where is a site? --------------------------------------------------------------------------
@@ -233,17 +201,29 @@ bool Triangulation<3>::exchange(std::span<const int> in, std::span<const Quad> o
   return true;
 }
 
+void Triangulation<3>::note_edges_gone(int cell) {
+  const Quad& v = topology_.vertices(cell);
+  for (const auto& [k, l] : kEdges) edges_.note_gone(v[index(k)], v[index(l)]);
+}
+
+void Triangulation<3>::note_edges_made(int cell) {
+  const Quad& v = topology_.vertices(cell);
+  for (const auto& [k, l] : kEdges) edges_.note_made(v[index(k)], v[index(l)]);
+}
+
 /// 2-3: the facet opposite to a corner gives way to the edge that joins the two apices.
 bool Triangulation<3>::flip_facet(int corner) {
   const int twin = topology_.twin(corner);
-  const int opposite = topology_.vertex(twin);
-  if (topology_.vertex(corner) == opposite) return false;
+  const int apex = topology_.vertex(corner), opposite = topology_.vertex(twin);
+  if (apex == opposite) return false;
   std::array<Quad, 3> out;
   for (std::size_t k = 0; k < 3; ++k) {
     out[k] = topology_.vertices(corner >> 2);
     out[k][index(Topology3::kFacet[corner & 3][k])] = opposite;
   }
-  return exchange(std::array{corner >> 2, twin >> 2}, out);
+  if (!exchange(std::array{corner >> 2, twin >> 2}, out)) return false;
+  edges_.note_made(apex, opposite);
+  return true;
 }
 
 /// 3-2 or 4-4: the edge u v opposite to two corners of a cell gives way. With three cells round it,
@@ -252,6 +232,7 @@ bool Triangulation<3>::flip_facet(int corner) {
 bool Triangulation<3>::flip_edge(int corner, int other, int cells) {
   const auto count = static_cast<std::size_t>(cells);
   if (topology_.degree(corner, other, cells + 1) != cells) return false;
+  const int first = corner & 3, second = other & 3;
   std::array<int, 4> in{}, ring{};
   for (std::size_t k = 0; k < count; ++k) {
     in[k] = corner >> 2;
@@ -272,7 +253,14 @@ bool Triangulation<3>::flip_edge(int corner, int other, int cells) {
       out[end++][i] = q;
     }
   }
-  return exchange({in.data(), count}, {out.data(), end});
+  std::array<int, 2> ends{};
+  for (int i = 0, k = 0; i < 4; ++i) {
+    if (i != first && i != second) ends[index(k++)] = topology_.vertex(4 * in[0] + i);
+  }
+  if (!exchange({in.data(), count}, {out.data(), end})) return false;
+  edges_.note_gone(ends[0], ends[1]);
+  if (count == 4) edges_.note_made(ring[0], q);
+  return true;
 }
 
 /// 4-1: a finite vertex of the facet opposite to a corner that has no other cells than these two
@@ -296,7 +284,9 @@ bool Triangulation<3>::flip_vertex(int corner) {
     }
     std::array<Quad, 1> out{topology_.vertices(cell)};
     out[0][index(f[k])] = opposite;
+    const int apex = topology_.vertex(corner);
     if (!exchange(std::array{cell, beyond, without_v, without_w}, out)) continue;
+    for (const int end : {apex, opposite, v, w}) edges_.note_gone(u, end);
     hide(u, opposite >= 0 ? opposite : finite_neighbour(opposite));
     return true;
   }
@@ -496,7 +486,7 @@ bool Triangulation<3>::extract_inverted() {
 
   const std::int64_t most = present_ / 6;  // about where a build is cheaper
   for (;;) {
-    const std::size_t first = touched_.size();
+    const std::size_t first = touched_.size(), first_note = edges_.mark();
     log_.clear();
     logging_ = true;
     unresolved_ = inverted_;
@@ -509,6 +499,7 @@ bool Triangulation<3>::extract_inverted() {
     logging_ = false;
     if (unresolved_.empty()) return true;
     undo_flips();
+    edges_.take_back(first_note);
     touched_.resize(first);
     if (!choose_cover(unresolved_)) return false;
     if (report_.extracted + static_cast<std::int64_t>(cover_.size()) > most) return false;

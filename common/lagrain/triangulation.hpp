@@ -4,6 +4,7 @@
 /// built in dim2 and dim3; `common` only names the interface, so that the neighbourhood is written
 /// once.
 
+#include <lagrain/edge_list.hpp>
 #include <lagrain/vec.hpp>
 
 #include <Eigen/Core>
@@ -48,6 +49,8 @@ concept RegularTriangulation = requires(T t, const T ct, std::span<const int> mo
   t.build(sites, weights);
   { t.move(moved, sites, weights) } -> std::same_as<UpdateReport>;
   ct.for_each_edge(visit);
+  // Sorted.
+  { ct.edges() } -> std::same_as<std::span<const EdgeList::Edge>>;
   { ct.hidden() } -> std::convertible_to<std::span<const int>>;
   { ct.size() } -> std::convertible_to<int>;
 };

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -20,10 +21,9 @@ namespace lagrain {
 /// How the triangulation follows the grains. The defaults are proved to miss nothing; other values
 /// exist to show and to test what goes wrong without them.
 struct Laziness {
-  /// Skin of a grain, as a fraction of the smallest radius among it and its neighbours in T.
-  /// References taken at different instants pass the certificate up to 0.2426; overlaps cost 0.41
-  /// of their size.
-  double skin = 0.24;
+  /// Skins as multiples of those that pass the certificate although references are taken at
+  /// different instants: 0.2426 r between two equal grains that touch, more where there is room.
+  double skin = 1.3;
   bool certify = true;  ///< test the certificate after every update
   bool follow = true;   ///< false: T is built once and never moved
 };
@@ -33,7 +33,7 @@ struct TriangulationCost {
   std::int64_t updates = 0;   ///< refreshes in which some reference centre moved
   std::int64_t moved = 0;     ///< reference centres moved
   UpdateReport ladder;        ///< what the updates had to do
-  std::int64_t shrunk = 0;    ///< grains brought up to date because an edge failed the certificate
+  std::int64_t shrunk = 0;    ///< grains given a small skin because an edge failed the certificate
   std::int64_t searched = 0;  ///< range searches around grains that still failed, or are hidden
 };
 
@@ -47,9 +47,13 @@ struct TriangulationCost {
 /// plane). So a grain's reference is moved, and T repaired by flips around it, only when the grain
 /// is about to leave its skin. Nothing depends on speeds, time step or the order of flips.
 ///
+/// Skins are as large as the neighbours of a grain leave room for: where grains fly they reach to
+/// half of the gap and beyond. A new reference stands ahead of its grain, on the way that it took
+/// through its last skin, so that a grain in flight crosses the whole ball and not half of it.
+///
 /// Where an edge fails the certificate (deep overlap, a tiny grain come close to a large one) both
-/// ends are brought up to date with skins chosen anew. What still fails, and what is hidden, is
-/// searched by brute force: then too every pair is found, and `cost().searched` says so.
+/// ends are brought up to date with small skins. What still fails, and what is hidden, is searched
+/// by brute force: then too every pair is found, and `cost().searched` says so.
 template <int Dim, RegularTriangulation<Dim> T = Triangulation<Dim>>
 class TriangulationNeighbourhood {
  public:
@@ -67,101 +71,201 @@ class TriangulationNeighbourhood {
                   std::vector<Pair>& pairs) {
     if (reference_.cols() != x.cols()) {
       build(x, radius);
+      for (int i = 0; i < size(); ++i) margin[i] = std::min(margin[i], room(x, i));
     } else if (laziness_.follow) {
       // T does not change when everything moves together: displacements count against the drift.
       drift_ = common_drift<Dim>(size(), [&](int i) { return x.col(i) - reference_.col(i); });
       for (int i = 0; i < size(); ++i) {
+        const double left = room(x, i);
         margin[i] = std::min(margin[i], 0.5 * skin_[i]);
-        if (strayed(x, i, margin[i])) moved_.push_back(i);
+        if (!(left >= margin[i])) join(i);
       }
       if (!moved_.empty()) {
         ++cost_.updates;
-        move_references(x, radius);
+        placed_.clear();
+        place(x, radius, margin);
+        move_references();
         certify(x, radius);
+        for (const int i : placed_) margin[i] = std::min(margin[i], room(x, i));
       }
+    } else {
+      for (int i = 0; i < size(); ++i) margin[i] = std::min(margin[i], 0.5 * skin_[i]);
     }
-    for (int i = 0; i < size(); ++i) margin[i] = std::min(margin[i], 0.5 * skin_[i]);
 
     collect_near_edges(x, radius, margin, pairs);
     if (!uncertain_.empty()) search_around_uncertain(x, radius, margin, pairs);
   }
 
  private:
+  /// Where a grain stands in an update: not concerned, in moved_ without a new reference, with one.
+  enum class State : unsigned char { at_rest, waiting, placed };
+  /// What a new reference must keep from a neighbour's: see place_one.
+  struct Bound {
+    double slack;    // squared distance less both weights, without a skin here [m^2]
+    double forward;  // the way towards the neighbour's far side, along the motion [m]
+  };
+
   int size() const { return static_cast<int>(weight_.size()); }
+  State& state(int i) { return state_[static_cast<std::size_t>(i)]; }
 
   void build(const Columns<Dim>& x, const Eigen::VectorXd& radius) {
     // Skins follow the neighbours in T, and T the skins: start without.
     reference_ = x;
+    drift_.setZero();
     weight_ = radius.array().square();
     t_.build(reference_, weight_);
     skin_.setZero(radius.size());
-    everybody();
-    choose_skins(radius);
-    t_.build(reference_, weight_);
+    state_.assign(static_cast<std::size_t>(size()), State::at_rest);
     moved_.clear();
+    placed_.clear();
+    for (int i = 0; i < size(); ++i) join(i);
+    place(x, radius, Eigen::VectorXd::Constant(size(), std::numeric_limits<double>::infinity()));
+    t_.build(reference_, weight_);
+    placed_.swap(moved_);
     certify(x, radius);
   }
 
-  void everybody() {
-    moved_.resize(static_cast<std::size_t>(size()));
-    std::iota(moved_.begin(), moved_.end(), 0);
+  /// How far i may move before it leaves its skin; negative if it has, or is not a number.
+  double room(const Columns<Dim>& x, int i) const {
+    return skin_[i] * (1 - 1e-6) - (x.col(i) - drift_ - reference_.col(i)).norm();
   }
 
-  /// True if i may leave its skin before the next refresh, which comes at the latest when it has
-  /// moved by its margin.
-  bool strayed(const Columns<Dim>& x, int i, double margin) const {
-    const double room = (skin_[i] - margin) * (1 - 1e-6);
-    return !((x.col(i) - drift_ - reference_.col(i)).squaredNorm() <= room * room);
+  void join(int i) {
+    state(i) = State::waiting;
+    moved_.push_back(i);
   }
 
-  /// New skins for the grains in moved_, from their neighbours in T as it stands.
-  void choose_skins(const Eigen::VectorXd& radius) {
-    for (const int i : moved_) {
-      double smallest = radius[i];
-      t_.for_each_neighbour(i, [&](int j) { smallest = std::min(smallest, radius[j]); });
-      skin_[i] = laziness_.skin * smallest;
-      const double inflated = radius[i] + skin_[i];
-      weight_[i] = inflated * inflated;
+  void set_skin(const Eigen::VectorXd& radius, int i, double skin) {
+    skin_[i] = skin;
+    weight_[i] = (radius[i] + skin) * (radius[i] + skin);
+  }
+
+  /// Gives the grains in moved_ new references and skins. Neighbours whose own skins leave too
+  /// little join moved_.
+  void place(const Columns<Dim>& x, const Eigen::VectorXd& radius, const Eigen::VectorXd& margin) {
+    for (std::size_t k = 0; k < moved_.size(); ++k) {
+      place_one(x, radius, moved_[k], margin[moved_[k]]);
     }
   }
 
-  /// Brings the references in moved_ up to date, repairs T, and empties moved_.
-  void move_references(const Columns<Dim>& x, const Eigen::VectorXd& radius) {
-    choose_skins(radius);
-    for (const int i : moved_) reference_.col(i) = x.col(i) - drift_;
+  /// The skin is the largest that the certificate allows against the neighbours in T as it stands,
+  /// at their references, and that is fair to them at their present places. T will change: that the
+  /// new edges pass too is only likely here, and seen to by certify().
+  void place_one(const Columns<Dim>& x, const Eigen::VectorXd& radius, int i, double margin) {
+    const Vec<Dim> here = x.col(i) - drift_;
+    const double r = radius[i];
+    Vec<Dim> ahead = here - reference_.col(i);
+    const double way = ahead.norm();
+    ahead *= way > 0 ? 1 / way : 0;
+
+    bounds_.clear();
+    double smallest = r;
+    double fair = kMostSkin * r;
+    double centred = fair;  // allowed if the reference is put here
+    t_.for_each_neighbour(i, [&](int j) {
+      smallest = std::min(smallest, radius[j]);
+      const double share =
+          laziness_.skin * fair_skin(r, radius[j], (x.col(j) - drift_ - here).squaredNorm());
+      fair = std::min(fair, share);
+      if (state(j) == State::waiting) return;
+      const Vec<Dim> away = here - reference_.col(j);
+      const Bound bound{away.squaredNorm() - r * r - weight_[j], away.dot(ahead)};
+      const double allowed = allowed_skin(r, 0, bound.slack);
+      if (state(j) == State::at_rest && allowed < kTooLittle * share) {
+        join(j);
+        return;
+      }
+      centred = std::min(centred, allowed);
+      bounds_.push_back(bound);
+    });
+
+    double skin = std::min(fair, centred);
+    double shift = 0;
+    // Ahead by a share of the skin that leaves the margin on all sides.
+    const double share = way > 0 ? std::min(kMostAhead, 1 - margin / skin) : 0;
+    if (share > 0) {
+      double shifted = fair;
+      for (const Bound& bound : bounds_) {
+        shifted = std::min(shifted, allowed_skin(r - share * bound.forward, share, bound.slack));
+      }
+      if ((1 + share) * shifted > skin) {
+        skin = shifted;
+        shift = share * skin;
+      }
+    }
+    if (!(skin > kLeastSkin * smallest)) {
+      skin = kLeastSkin * smallest;
+      shift = 0;
+    }
+    // A hair less, so that rounding does not fail the certificate.
+    reference_.col(i) = here + (1 - 1e-6) * shift * ahead;
+    set_skin(radius, i, (1 - 1e-6) * skin);
+    state(i) = State::placed;
+  }
+
+  /// A skin for each of two grains that passes whatever happens until one of them moves its
+  /// reference to its true place: the other is off its own by at most its skin s then, and
+  /// (distance - s)^2 = (a + s)^2 + (b + s)^2.
+  static double fair_skin(double a, double b, double squared_distance) {
+    const double slack = squared_distance - a * a - b * b;
+    const double sum = a + b + std::sqrt(squared_distance);
+    return slack > 0 ? std::sqrt(sum * sum + slack) - sum : 0;
+  }
+
+  /// The positive root s of (1 - share^2) s^2 + 2 b s = slack; 0 if there is none.
+  static double allowed_skin(double b, double share, double slack) {
+    if (!(slack > 0)) return 0;
+    const double a = 1 - share * share;
+    const double root = std::sqrt(b * b + a * slack);
+    return b > 0 ? slack / (b + root) : (root - b) / a;
+  }
+
+  /// Tells T of the new references of moved_, and empties it into placed_.
+  void move_references() {
     cost_.moved += static_cast<std::int64_t>(moved_.size());
     cost_.ladder += t_.move(moved_, reference_, weight_);
+    placed_.insert(placed_.end(), moved_.begin(), moved_.end());
     moved_.clear();
   }
 
-  /// Edges whose inflated spheres meet at a right angle or more: their ends go to moved_, unless
-  /// they are up to date with the smallest skin already, then to uncertain_.
+  /// Looks for edges whose inflated spheres meet at a right angle or more, and brings their ends up
+  /// to date with skins that pass between grains of hardly any overlap. Ends of edges that fail
+  /// again and again are uncertain.
+  /// @param placed_  all grains with a new reference in this update; back at rest then
   void certify(const Columns<Dim>& x, const Eigen::VectorXd& radius) {
     uncertain_.clear();
-    if (!laziness_.certify) return;
-    for (int round = 0;; ++round) {
-      failed_.clear();
-      t_.for_each_edge([&](int a, int b) {
-        const double squared = (reference_.col(a) - reference_.col(b)).squaredNorm();
-        // One part in 10^12 covers the rounding of both sides.
-        if (!(squared > (weight_[a] + weight_[b]) * (1 + 1e-12))) {
-          failed_.push_back(a);
-          failed_.push_back(b);
+    if (laziness_.certify) {
+      for (int round = 0;; ++round) {
+        failed_.clear();
+        for (const auto& [a, b] : t_.edges()) {
+          const double squared = (reference_.col(a) - reference_.col(b)).squaredNorm();
+          // One part in 10^12 covers the rounding of both sides.
+          if (!(squared > (weight_[a] + weight_[b]) * (1 + 1e-12))) {
+            failed_.push_back(a);
+            failed_.push_back(b);
+          }
         }
-      });
-      sort_unique(failed_);
-      if (failed_.empty()) break;
-      if (round == kRounds) {
-        uncertain_ = failed_;
-        break;
+        sort_unique(failed_);
+        if (failed_.empty()) break;
+        if (round == kRounds) {
+          uncertain_ = failed_;
+          break;
+        }
+        cost_.shrunk += static_cast<std::int64_t>(failed_.size());
+        for (const int i : failed_) {
+          double smallest = radius[i];
+          t_.for_each_neighbour(i, [&](int j) { smallest = std::min(smallest, radius[j]); });
+          reference_.col(i) = x.col(i) - drift_;
+          set_skin(radius, i, kSmallSkin * smallest);
+        }
+        moved_ = failed_;
+        move_references();
       }
-      moved_ = failed_;
-      cost_.shrunk += static_cast<std::int64_t>(moved_.size());
-      move_references(x, radius);
+      const auto hidden = t_.hidden();
+      uncertain_.insert(uncertain_.end(), hidden.begin(), hidden.end());
+      sort_unique(uncertain_);
     }
-    const auto hidden = t_.hidden();
-    uncertain_.insert(uncertain_.end(), hidden.begin(), hidden.end());
-    sort_unique(uncertain_);
+    for (const int i : placed_) state(i) = State::at_rest;
   }
 
   static void sort_unique(std::vector<int>& list) {
@@ -169,29 +273,18 @@ class TriangulationNeighbourhood {
     list.erase(std::unique(list.begin(), list.end()), list.end());
   }
 
-  /// The edges of T within reach, in increasing order: a counting sort by the first end, then short
-  /// sorts.
+  /// The edges of T within reach; T has them in order.
   void collect_near_edges(const Columns<Dim>& x, const Eigen::VectorXd& radius,
                           const Eigen::VectorXd& margin, std::vector<Pair>& pairs) {
-    unsorted_.clear();
-    row_end_.assign(static_cast<std::size_t>(size()) + 1, 0);
-    t_.for_each_edge([&](int a, int b) {
-      if (!within_reach<Dim>(x, radius, margin, a, b)) return;
-      unsorted_.push_back({a, b});
-      ++row_end_[static_cast<std::size_t>(a) + 1];
-    });
-    for (std::size_t i = 1; i < row_end_.size(); ++i) row_end_[i] += row_end_[i - 1];
-    pairs.resize(unsorted_.size());
-    // row_end_[i] starts as the beginning of row i and becomes its end.
-    for (const Pair& pair : unsorted_) {
-      pairs[static_cast<std::size_t>(row_end_[static_cast<std::size_t>(pair.i)]++)] = pair;
+    const auto edges = t_.edges();
+    pairs.resize(edges.size());
+    std::size_t count = 0;
+    for (const auto& [i, j] : edges) {
+      // Written in any case and counted if near: cheaper than a branch that nobody can predict.
+      pairs[count] = {i, j};
+      count += within_reach<Dim>(x, radius, margin, i, j);
     }
-    std::ptrdiff_t begin = 0;
-    for (int i = 0; i < size(); ++i) {
-      const std::ptrdiff_t end = row_end_[static_cast<std::size_t>(i)];
-      std::sort(pairs.begin() + begin, pairs.begin() + end);
-      begin = end;
-    }
+    pairs.resize(count);
   }
 
   /// Every pair that T may lack has an end that lies on a failed edge or is hidden: look at all
@@ -211,6 +304,11 @@ class TriangulationNeighbourhood {
   }
 
   static constexpr int kRounds = 3;
+  static constexpr double kMostSkin = 2;      // of a grain's radius
+  static constexpr double kLeastSkin = 0.02;  // of the smallest radius around
+  static constexpr double kSmallSkin = 0.24;  // of the same: below (3 sqrt 2 - 4)
+  static constexpr double kMostAhead = 0.7;   // of a skin
+  static constexpr double kTooLittle = 0.25;  // of a fair share
 
   Laziness laziness_;
   T t_;
@@ -221,10 +319,11 @@ class TriangulationNeighbourhood {
   std::vector<int> uncertain_;         ///< grains whose pairs T may lack
   TriangulationCost cost_;
 
-  std::vector<int> moved_;
+  std::vector<State> state_;
+  std::vector<int> moved_;   ///< to be moved in T
+  std::vector<int> placed_;  ///< moved in this update
   std::vector<int> failed_;
-  std::vector<Pair> unsorted_;
-  std::vector<std::ptrdiff_t> row_end_;
+  std::vector<Bound> bounds_;
 };
 
 }  // namespace lagrain

@@ -45,7 +45,8 @@ namespace lagrain {
 ///    locally regular it is the regular one. If the hull fails the test, build anew.
 /// 4. Insert what was taken out, and try the hidden sites.
 ///
-/// Representation: Topology2, about 100 bytes per site with two copies of the places. Sets on one
+/// Representation: Topology2 and a list of edges, about 150 bytes per site with two copies of the
+/// places. Sets on one
 /// line are legal (dimension() < 2): a sorted list, made anew at every change. Sets with fewer than
 /// kTiny visible sites are made anew as well.
 ///
@@ -95,23 +96,13 @@ class Triangulation<2> {
   /// Present sites without a cell, in increasing order.
   std::span<const int> hidden() const { return hidden_; }
 
-  /// Calls f(i, j) once for each finite edge, i < j.
+  /// The finite edges, sorted.
+  std::span<const EdgeList::Edge> edges() const { return edges_.all(); }
+
+  /// Calls f(i, j) once for each finite edge, i < j, in increasing order.
   template <class F>
   void for_each_edge(F&& f) const {
-    for (std::size_t k = 1; k < line_.size(); ++k) {
-      if (line_[k - 1] < line_[k]) {
-        f(line_[k - 1], line_[k]);
-      } else {
-        f(line_[k], line_[k - 1]);
-      }
-    }
-    for (int t = 0; t < topology_.slots(); ++t) {
-      const auto v = topology_.vertices(t);
-      // An edge runs once each way; negative vertices (infinite, or of a dead slot) drop out.
-      if (v[0] >= 0 && v[0] < v[1]) f(v[0], v[1]);
-      if (v[1] >= 0 && v[1] < v[2]) f(v[1], v[2]);
-      if (v[2] >= 0 && v[2] < v[0]) f(v[2], v[0]);
-    }
+    for (const auto& [i, j] : edges()) f(i, j);
   }
 
   /// Calls f(a, b, c) for each finite triangle, counter-clockwise.
@@ -151,6 +142,7 @@ class Triangulation<2> {
   void rebuild();
   void rebuild_line(const std::vector<int>& present);
   void rebuild_plane(const std::vector<int>& present);
+  void find_edges(EdgeList& list) const;
 
   // Decisions (update2.cpp).
   std::array<int, 3> corners_of(int triangle) const {
@@ -179,6 +171,7 @@ class Triangulation<2> {
   void push_triangle(int triangle);
   void flip(int corner);
   bool resolve(int corner);
+  int take_out_degree3(int site);
   bool drain();
   bool settle();
   bool flip_to_regular(std::span<const int> moved, bool sweep);
@@ -196,6 +189,7 @@ class Triangulation<2> {
   Topology2 topology_;         // corner_of(site): corner, or place in line_, or a note (see hide)
   std::vector<int> line_;    // visible sites in order along the line if dimension_ < 2, else empty
   std::vector<int> hidden_;  // sorted at rest
+  EdgeList edges_;
   int present_ = 0;
   int dimension_ = -1;
 

@@ -62,8 +62,7 @@ namespace lagrain {
 /// anew at every change.
 ///
 /// Limits: coordinates between 1e-60 and 1e60 in size go fast, others through exact arithmetic; not
-/// safe for use from several threads, for_each_edge and for_each_neighbour included (they keep
-/// scratch).
+/// safe for use from several threads, for_each_neighbour included (it keeps scratch).
 template <>
 class Triangulation<3> {
  public:
@@ -112,11 +111,13 @@ class Triangulation<3> {
   /// Present sites without a cell, in increasing order.
   std::span<const int> hidden() const { return hidden_; }
 
-  /// Calls f(i, j) once for each edge, i < j, i increasing.
+  /// The edges, sorted.
+  std::span<const EdgeList::Edge> edges() const { return edges_.all(); }
+
+  /// Calls f(i, j) once for each edge, i < j, in increasing order.
   template <class F>
   void for_each_edge(F&& f) const {
-    if (!edges_known_) find_edges();
-    for (const auto& [i, j] : edges_) f(i, j);
+    for (const auto& [i, j] : edges()) f(i, j);
   }
 
   /// Calls f(a, b, c, d) for each tetrahedron, positive; for none if dimension() < 3.
@@ -172,6 +173,7 @@ class Triangulation<3> {
     int inside;                // corner found in the small triangulation
   };
 
+  static constexpr int kEdges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
   static constexpr int kRings = 4;  ///< cavities wider than this are not tried
 
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
@@ -191,15 +193,16 @@ class Triangulation<3> {
   void choose_middle_at_rest();
   bool sees_whole_hull() const;
   void collect_vertices(std::span<const int> corners, std::vector<int>& vertices) const;
-  void find_edges() const;
 
   // Build and cavities (build3.cpp).
   void rebuild();
+  void find_edges(EdgeList& list) const;
   void insert_all(std::span<const int> order, const Site3* away);
   void sort_cells(const std::vector<int>& site_order);
   void first_simplex(const Quad& simplex);
   void place_auxiliaries(Quad& simplex, const Site3* away);
   bool insert_visible(int site);
+  void note_edges_of_insertion(int site);
   bool refill(std::span<const int> hole, std::span<const int> sites, const Site3* places,
               const Site3* away);
   bool take_out(int site, const Site3* places);
@@ -209,6 +212,8 @@ class Triangulation<3> {
   void push(int corner);
   void push_cell(int cell);
   bool exchange(std::span<const int> in, std::span<const Quad> out);
+  void note_edges_gone(int cell);
+  void note_edges_made(int cell);
   bool flip_facet(int corner);
   bool flip_edge(int corner, int other, int cells);
   bool flip_vertex(int corner);
@@ -236,8 +241,7 @@ class Triangulation<3> {
   Site3 middle_{};     // strictly within the hull
   bool thin_ = false;  // unless rounding finds no such point
 
-  mutable std::vector<std::array<int, 2>> edges_;
-  mutable bool edges_known_ = false;
+  EdgeList edges_;
 
   // Scratch of an update, kept so that a small update costs nothing that grows with size().
   UpdateReport report_;
@@ -253,7 +257,7 @@ class Triangulation<3> {
   std::vector<CavityFacet> facets_;
   std::vector<int> facet_table_;
   NotCopied<Triangulation<3>> small_;
-  mutable std::vector<int> star_, neighbours_, edge_note_;
+  mutable std::vector<int> star_, neighbours_, vertex_note_;
 };
 
 static_assert(RegularTriangulation<Triangulation<3>, 3>);

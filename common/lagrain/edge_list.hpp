@@ -1,0 +1,116 @@
+#pragma once
+/// @file
+/// The edges of a triangulation as one sorted list, kept up to date by what its updates change.
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lagrain {
+
+/// Sorted edges. Flips note what they make and what they take away; `settle` brings the list up to
+/// date in one pass that costs little more than a copy. Notes count: an edge may come and go, and
+/// in a triangulation that is turned inside out for a while two edges may join the same sites.
+///
+/// Vertices at infinity have negative ids; notes on their edges are ignored. A list that was never
+/// found ignores all notes.
+class EdgeList {
+ public:
+  using Edge = std::array<int, 2>;  ///< two sites, the lower id first
+
+  std::span<const Edge> all() const { return edges_; }
+
+  /// Forgets everything: the triangulation is being built anew.
+  void clear() {
+    live_ = false;
+    notes_.clear();
+  }
+
+  /// Lists the edges from nothing: each that for_each(f) gives to f(i, j), as often as it likes, in
+  /// any order, of ids in [0, size).
+  template <class ForEach>
+  void find(int size, ForEach&& for_each) {
+    const auto index = [](int i) { return static_cast<std::size_t>(i); };
+    // A counting sort by the lower end, then short sorts.
+    std::vector<std::size_t> end(index(size) + 2, 0);
+    for_each([&](int i, int j) { ++end[index(std::min(i, j)) + 2]; });
+    for (std::size_t i = 2; i < end.size(); ++i) end[i] += end[i - 1];
+    std::vector<int> other(end.back());
+    for_each([&](int i, int j) { other[end[index(std::min(i, j)) + 1]++] = std::max(i, j); });
+    edges_.clear();
+    for (int i = 0; i < size; ++i) {
+      const auto row = other.begin() + static_cast<std::ptrdiff_t>(end[index(i)]);
+      const auto row_end = other.begin() + static_cast<std::ptrdiff_t>(end[index(i) + 1]);
+      std::sort(row, row_end);
+      std::for_each(row, std::unique(row, row_end), [&](int j) { edges_.push_back({i, j}); });
+    }
+    live_ = true;
+    notes_.clear();
+  }
+
+  void note_made(int a, int b) { note(a, b, 0); }
+  void note_gone(int a, int b) { note(a, b, 1); }
+  /// Notes so far; those after a mark can be taken back, or reduced to what they change when each
+  /// edge made or gone is counted once.
+  std::size_t mark() const { return notes_.size(); }
+  void take_back(std::size_t mark) { notes_.resize(std::min(mark, notes_.size())); }
+  void count_once(std::size_t mark) {
+    const auto first = notes_.begin() + static_cast<std::ptrdiff_t>(mark);
+    std::sort(first, notes_.end());
+    const auto last = std::unique(first, notes_.end());
+    auto kept = first;
+    for (auto it = first; it != last; ++it) {
+      if (it + 1 != last && (*it >> 1) == (*(it + 1) >> 1)) {
+        ++it;
+      } else {
+        *kept++ = *it;
+      }
+    }
+    notes_.erase(kept, notes_.end());
+  }
+
+  /// Ends an update.
+  void settle() {
+    if (notes_.empty()) return;
+    std::sort(notes_.begin(), notes_.end());
+    next_.clear();
+    next_.reserve(edges_.size() + notes_.size());
+    auto old = edges_.cbegin();
+    for (auto it = notes_.cbegin(); it != notes_.cend();) {
+      const std::uint64_t key = *it >> 1;
+      int count = 0;
+      for (; it != notes_.cend() && *it >> 1 == key; ++it) count += (*it & 1) == 0 ? 1 : -1;
+      if (count == 0) continue;
+      const Edge edge{static_cast<int>(key >> 32), static_cast<int>(key & 0xffffffffU)};
+      const auto place = std::lower_bound(old, edges_.cend(), edge);
+      next_.insert(next_.end(), old, place);
+      old = place;
+      if (count > 0) {
+        next_.push_back(edge);
+      } else {
+        ++old;
+      }
+    }
+    next_.insert(next_.end(), old, edges_.cend());
+    edges_.swap(next_);
+    notes_.clear();
+  }
+
+ private:
+  /// One number that sorts by edge; the lowest bit tells which kind of note it is.
+  void note(int a, int b, unsigned gone) {
+    if (!live_ || (a | b) < 0) return;
+    const auto i = static_cast<std::uint64_t>(std::min(a, b));
+    const auto j = static_cast<std::uint64_t>(std::max(a, b));
+    notes_.push_back((i << 32 | j) << 1 | gone);
+  }
+
+  std::vector<Edge> edges_, next_;
+  std::vector<std::uint64_t> notes_;
+  bool live_ = false;
+};
+
+}  // namespace lagrain
