@@ -22,6 +22,11 @@ namespace fs = std::filesystem;
 
 constexpr std::array<const char*, 3> kAxes{"x", "y", "z"};
 
+void append(std::string& line, double number) {
+  line += ' ';
+  line += shortest(number);
+}
+
 double median_mass(std::vector<double> masses) {
   const auto middle = masses.begin() + static_cast<std::ptrdiff_t>(masses.size() / 2);
   std::nth_element(masses.begin(), middle, masses.end());
@@ -219,7 +224,7 @@ std::string lammps_data(const Bed<Dim>& bed) {
     text += std::to_string(i + 1) + " " + std::to_string(types[i]) + " " +
             shortest(2 * grain.radius) + " " + shortest(grain.mass / grain_volume<3>(grain.radius));
     for (int axis = 0; axis < 3; ++axis) {
-      text += " " + (axis < Dim ? shortest(grain.position[std::min(axis, Dim - 1)]) : "0");
+      append(text, axis < Dim ? grain.position[std::min(axis, Dim - 1)] : 0);
     }
     text += "\n";
   }
@@ -228,11 +233,11 @@ std::string lammps_data(const Bed<Dim>& bed) {
     const Grain<Dim>& grain = bed.grains[i];
     text += std::to_string(i + 1);
     for (int axis = 0; axis < 3; ++axis) {
-      text += " " + (axis < Dim ? shortest(grain.velocity[std::min(axis, Dim - 1)]) : "0");
+      append(text, axis < Dim ? grain.velocity[std::min(axis, Dim - 1)] : 0);
     }
     for (int axis = 0; axis < 3; ++axis) {
       const int mine = Dim == 3 ? axis : axis == 2 ? 0 : -1;
-      text += " " + (mine >= 0 ? shortest(grain.omega[mine]) : "0");
+      append(text, mine >= 0 ? grain.omega[mine] : 0);
     }
     text += "\n";
   }

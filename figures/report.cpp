@@ -270,6 +270,7 @@ Plot group_plot(const SpeedResults& results, const std::string& group, int dimen
                                            Marker::triangle, Marker::diamond};
   Plot plot{.x = std::move(axis),
             .y = {.label = "time per grain and step [ns]", .log = true},
+            .series = {},
             .legend = legend};
   int index = 0;
   for (const std::string& name : contender_names(results)) {
@@ -410,14 +411,18 @@ class Report {
 
 std::string speed_csv(const SpeedResults& results) {
   std::string text = std::string(kRowHead) + ",steps[-],time_step[s]";
-  for (const Column& column : columns()) text += "," + column.name;
+  for (const Column& column : columns()) {
+    text += ',';
+    text += column.name;
+  }
   text += "\n";
   for (const SceneSpeed& scene : results.scenes) {
     for (const Contender& contender : scene.contenders) {
       text += row_start(scene, contender) + "," + std::to_string(scene.steps) + "," +
               shortest(scene.time_step);
       for (const Column& column : columns()) {
-        text += "," + number_or_nothing(column.value(scene, contender));
+        text += ',';
+        text += number_or_nothing(column.value(scene, contender));
       }
       text += "\n";
     }
@@ -454,6 +459,7 @@ std::string phases_csv(const SpeedResults& results) {
 void write_speed_report(const FigureOptions& options) {
   make_folder(options.out);
   const Report report(options);
+  report.write({}, false);  // a folder that cannot be written shows before the first step
   const SpeedResults results = measure_speed(
       options, report.lammps(), [&](const SpeedResults& so_far) { report.write(so_far, false); });
   report.write(results, true);

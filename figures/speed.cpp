@@ -420,6 +420,7 @@ class Harness {
         (*bed)->grains.back().velocity = {0, 0, -static_cast<double>(speed)};
         Plan plan = plan_for((*bed)->count(), 3e6);
         plan.warm_up = 10;
+        plan.multi = true;
         compete<3>(kImpactGroup, "a ball of 5 r at " + std::to_string(speed) + " m/s", **bed, plan,
                    speed);
       });
