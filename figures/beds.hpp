@@ -14,7 +14,6 @@
 #include <lagrain/triangulation_neighbourhood.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -170,30 +169,39 @@ std::vector<Grain<Dim>> let_down(const Pour<Dim>& what) {
   return grains;
 }
 
-/// Grains in a box that have come to rest: first soft, which takes fewer steps, then as hard as
-/// they are. They settle with little friction: contenders start without the memory of contacts, and
-/// what leant on friction would move again.
+/// A part of settling.
+struct Stage {
+  double softness;  ///< divides the stiffness
+  double time;      ///< [sqrt(r / g)]
+};
+
+/// Lets a bed come to rest: soft at first, which takes fewer steps. It settles with strong dashpots
+/// and little friction: contenders start without the memory of contacts, and what leant on friction
+/// would move again.
+template <int Dim>
+void settle(Bed<Dim>& bed, double radius, double smallest, const std::vector<Stage>& stages,
+            const Checkpoint& checkpoint) {
+  constexpr double kSettlingFriction = 0.1, kSettlingRestitution = 0.1;
+  for (const Stage& stage : stages) {
+    choose_law<Dim>(bed, radius, smallest, kSettlingRestitution, stage.softness);
+    bed.law.friction = kSettlingFriction;
+    halt(bed);
+    advance<Dim>(bed, steps_for(bed, radius, stage.time), checkpoint);
+  }
+}
+
+/// Grains in a box that have come to rest.
 template <int Dim>
 Bed<Dim> pour(const Pour<Dim>& what, const Checkpoint& checkpoint) {
-  constexpr double kSettlingFriction = 0.1, kSettlingRestitution = 0.1;
-  struct Stage {
-    double softness;
-    double time;  // [sqrt(r / g)]
-  };
-  // In the plane columns weigh more, so that soft discs would overlap deeply.
-  constexpr std::array<Stage, 3> kStages{
-      {{Dim == 2 ? 4 : 16, Dim == 2 ? 25 : 15}, {Dim == 2 ? 2 : 4, Dim == 2 ? 6 : 3}, {1, 3}}};
   Bed<Dim> bed;
   bed.size.setConstant(what.width);
   bed.walls = open_box<Dim>(bed.size);
   bed.grains = let_down(what);
-  for (const Stage& stage : kStages) {
-    choose_law<Dim>(bed, what.radius, what.smallest, kSettlingRestitution, stage.softness);
-    bed.law.friction = kSettlingFriction;
-    halt(bed);
-    advance<Dim>(bed, steps_for(bed, what.radius, stage.time), checkpoint);
-  }
-  halt(bed);
+  // In the plane columns weigh more, so that soft discs would overlap deeply.
+  settle<Dim>(bed, what.radius, what.smallest,
+              Dim == 2 ? std::vector<Stage>{{4, 25}, {2, 6}, {1, 4}}
+                       : std::vector<Stage>{{16, 15}, {4, 3}, {1, 3}},
+              checkpoint);
   choose_law<Dim>(bed, what.radius, what.smallest);
   return bed;
 }
@@ -251,8 +259,10 @@ void put_large_grains(Bed<Dim>& bed, double radius, int count, const Checkpoint&
     });
   });
   bed.grains.insert(bed.grains.end(), large.begin(), large.end());
-  choose_law<Dim>(bed, ordinary, smallest, 0.1, 2);
-  advance<Dim>(bed, steps_for(bed, ordinary, 2), checkpoint);
+  settle<Dim>(
+      bed, ordinary, smallest,
+      Dim == 2 ? std::vector<Stage>{{2, 4}, {1, 1.5}} : std::vector<Stage>{{16, 5}, {1, 0.5}},
+      checkpoint);
   choose_law<Dim>(bed, ordinary, smallest);
 }
 
