@@ -35,7 +35,7 @@ struct Column {
   int digits = 3;
 };
 
-double fastest_ratio(const SceneSpeed& scene, const Contender& contender) {
+double over_triangulation(const SceneSpeed& scene, const Contender& contender) {
   const Contender* ours = scene.find(kTriangulation);
   return ours != nullptr && !ours->ns.empty() ? contender.median() / ours->median() : kUnknown;
 }
@@ -50,7 +50,7 @@ const std::vector<Column>& columns() {
        [](const SceneSpeed&, const Contender& c) { return c.median(); }},
       {"spread[%]", "spread, %",
        [](const SceneSpeed&, const Contender& c) { return 100 * c.spread(); }, 2},
-      {"over_triangulation[-]", "of the triangulation's", fastest_ratio},
+      {"over_triangulation[-]", "of the triangulation's", over_triangulation},
       {"missed[-]", "contacts missed", error(&RunErrors::missed)},
       {"audited[-]", "of", error(&RunErrors::audited), 9},
       {"dangerous_builds[-]", "dangerous builds", error(&RunErrors::dangerous)},
@@ -263,7 +263,7 @@ constexpr const char* kHowToRead =
 
 #ifdef LAGRAIN_WITH_RENDER
 
-/// One line per contender over what the group varies; only scenes that `use` takes.
+/// One line per contender over what the group varies.
 Plot group_plot(const SpeedResults& results, const std::string& group, int dimension, Axis axis,
                 Corner legend) {
   constexpr std::array<Marker, 5> kMarkers{Marker::disc, Marker::ring, Marker::square,

@@ -151,6 +151,16 @@ Bed<Dim> collision() {
   return bed;
 }
 
+/// A report takes minutes where nothing is optimised.
+bool too_slow() {
+#ifdef __OPTIMIZE__
+  return false;
+#else
+  MESSAGE("not optimised: no report is made");
+  return true;
+#endif
+}
+
 /// LAMMPS if it is installed; a message if not.
 std::optional<fs::path> lammps_or_message() {
   const auto program = find_lammps();
@@ -264,6 +274,7 @@ TEST_SUITE("report") {
   }
 
   TEST_CASE("a quick report writes its page, tables and plots, and misses no contact") {
+    if (too_slow()) return;
     const Folder folder;
     FigureOptions options{.out = folder.path, .scenes = {}, .quick = true};
     write_speed_report(options);
@@ -302,6 +313,7 @@ TEST_SUITE("report") {
   }
 
   TEST_CASE("a report that is stopped keeps what it has measured") {
+    if (too_slow()) return;
     const Folder folder;
     FigureOptions options{.out = folder.path, .scenes = {}, .quick = true};
     options.stop = [&] {
