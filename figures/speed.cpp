@@ -381,9 +381,9 @@ class Harness {
       });
     }
     if (quick()) return;
-    for (const Mix& mix : {Mix{1, 3, 0}, {10, 4, 6}}) {
+    for (const Mix& mix : {Mix{1, 3, 0}, {10, 3, 3}}) {
       scenes.emplace_back([this, mix] {
-        mixture<3>(ball_tile(1736, kRadius), {mix.tiles, 4}, mix.ratio, mix.large);
+        mixture<3>(ball_tile(1736, kRadius), {mix.tiles, 3}, mix.ratio, mix.large);
       });
     }
   }
