@@ -67,4 +67,11 @@ void draw_figures(const std::vector<Figure>& all, const std::vector<int>& number
                   const FigureOptions& options,
                   const std::function<void(const std::string& line)>& report);
 
+/// Where the gallery's entry for the speed report is kept.
+std::filesystem::path speed_article_file(const std::filesystem::path& out);
+
+/// Writes index.html anew, from what figures and the speed report have left in the folder.
+/// @throws SceneError if it cannot be written
+void renew_gallery(const std::vector<Figure>& all, const std::filesystem::path& out);
+
 }  // namespace lagrain

@@ -1,9 +1,10 @@
 /// @file
-/// The program `lagrain`: runs scenes and draws figures.
+/// The program `lagrain`: runs scenes, draws figures, reports how fast it is.
 ///
 /// Exit codes: 0 done, 1 the simulation went wrong, 2 the input is wrong, 130 stopped by Ctrl-C.
 
 #include "figure.hpp"
+#include "report.hpp"
 #include "scene_run.hpp"
 
 #include <lagrain/output.hpp>
@@ -12,6 +13,7 @@
 
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -127,6 +129,18 @@ struct FigureArguments {
   bool quick = false;
 };
 
+/// Progress on a terminal, at most ten times a second.
+void show_progress(FigureOptions& options, ProgressLine& line) {
+  if (!line.terminal()) return;
+  auto last = std::chrono::steady_clock::time_point{};
+  options.progress = [&line, last](double fraction, const std::string& doing) mutable {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last < std::chrono::milliseconds(100)) return;
+    last = now;
+    line.show(percent(fraction) + "  " + doing);
+  };
+}
+
 int figure_command(const FigureArguments& arguments) {
   FigureOptions options;
   options.out = arguments.out;
@@ -135,20 +149,25 @@ int figure_command(const FigureArguments& arguments) {
   // A program run from where it was built finds the sources; an installed one its data.
   options.scenes = fs::is_directory(LAGRAIN_SCENES) ? LAGRAIN_SCENES : LAGRAIN_INSTALLED_SCENES;
   ProgressLine line;
-  if (line.terminal()) {
-    auto last = std::chrono::steady_clock::time_point{};
-    options.progress = [&line, last](double fraction, const std::string& doing) mutable {
-      const auto now = std::chrono::steady_clock::now();
-      if (now - last < std::chrono::milliseconds(100)) return;
-      last = now;
-      line.show(percent(fraction) + "  " + doing);
-    };
-  }
+  show_progress(options, line);
   draw_figures(all_figures(), arguments.numbers, options, [&](const std::string& text) {
     line.clear();
     std::cout << text << std::endl;
   });
   std::cout << "gallery: " << (options.out / "index.html").string() << "\n";
+  return 0;
+}
+
+int report_command(const FigureArguments& arguments) {
+  FigureOptions options;
+  options.out = arguments.out;
+  options.quick = arguments.quick;
+  options.stop = stopping;
+  ProgressLine line;
+  show_progress(options, line);
+  bench::write_speed_report(options);
+  line.clear();
+  std::cout << "report: " << (options.out / "speed.html").string() << "\n";
   return 0;
 }
 
@@ -179,6 +198,12 @@ int main(int argc, char** argv) {
   figure_app->add_option("--out", figure.out, "folder to write")->capture_default_str();
   figure_app->add_flag("--quick", figure.quick, "same pictures from smaller scenes");
 
+  FigureArguments report;
+  CLI::App* report_app =
+      app.add_subcommand("report", "Measure speed and accuracy on this machine, beside others");
+  report_app->add_option("--out", report.out, "folder to write")->capture_default_str();
+  report_app->add_flag("--quick", report.quick, "small scenes and few steps");
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wish) {  // --help, --version
@@ -190,11 +215,14 @@ int main(int argc, char** argv) {
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
   try {
+    if (report_app->parsed()) return report_command(report);
     return run_app->parsed() ? run_command(run) : figure_command(figure);
   } catch (const SceneError& error) {
     return complain(error.what(), kBadInput);
   } catch (const Interrupted&) {
-    return complain("stopped; what was drawn is in " + figure.out, kStopped);
+    return report_app->parsed()
+               ? complain("stopped; what was measured is in " + report.out, kStopped)
+               : complain("stopped; what was drawn is in " + figure.out, kStopped);
   } catch (const SimulationError& error) {
     return complain(error.what(), kSimulationFailed);
   } catch (const std::exception& error) {

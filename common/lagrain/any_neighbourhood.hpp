@@ -26,6 +26,8 @@ class AnyNeighbourhood {
                   std::vector<Pair>& pairs) {
     held_->near_pairs(x, radius, margin, pairs);
   }
+  /// The grains have other numbers from now on.
+  void forget() { held_->forget(); }
   /// What the triangulation cost; null for other neighbourhoods.
   const TriangulationCost* cost() const { return held_->cost(); }
   /// Edges of the triangulation; 0 for other neighbourhoods.
@@ -37,6 +39,7 @@ class AnyNeighbourhood {
     virtual const char* name() const = 0;
     virtual void near_pairs(const Columns<Dim>&, const Eigen::VectorXd&, Eigen::VectorXd&,
                             std::vector<Pair>&) = 0;
+    virtual void forget() = 0;
     virtual const TriangulationCost* cost() const = 0;
     virtual std::int64_t edges() const = 0;
   };
@@ -48,6 +51,9 @@ class AnyNeighbourhood {
     void near_pairs(const Columns<Dim>& x, const Eigen::VectorXd& radius, Eigen::VectorXd& margin,
                     std::vector<Pair>& pairs) override {
       neighbourhood.near_pairs(x, radius, margin, pairs);
+    }
+    void forget() override {
+      if constexpr (requires { neighbourhood.forget(); }) neighbourhood.forget();
     }
     const TriangulationCost* cost() const override {
       if constexpr (requires { neighbourhood.cost(); }) return &neighbourhood.cost();

@@ -66,6 +66,9 @@ class TriangulationNeighbourhood {
   const TriangulationCost& cost() const { return cost_; }
   const Laziness& laziness() const { return laziness_; }
 
+  /// The grains have other numbers from now on: T is built anew at the next question.
+  void forget() { reference_.resize(Dim, 0); }
+
   /// @pre x is finite
   void near_pairs(const Columns<Dim>& x, const Eigen::VectorXd& radius, Eigen::VectorXd& margin,
                   std::vector<Pair>& pairs) {

@@ -192,6 +192,9 @@ TEST_SUITE("program") {
     CHECK(place.run({"figure", "99"}) == 2);
     CHECK(place.err().substr(0, 27) == "lagrain: figure 99: there i");
     CHECK(place.run({"figure", "one"}) == 2);
+    CHECK(place.run({"report", "--slow"}) == 2);
+    CHECK(holds(place.err(), "--slow"));
+    CHECK(place.run({"report", "--quick", "--out", "file/report"}) == 2);
   }
 
   TEST_CASE("a simulation that goes wrong is exit code 1, with grain, time and remedy") {

@@ -1,0 +1,321 @@
+#include "lammps.hpp"
+
+#include <lagrain/output.hpp>
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <string_view>
+
+namespace lagrain::bench {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<const char*, 3> kAxes{"x", "y", "z"};
+
+void append(std::string& line, double number) {
+  line += ' ';
+  line += shortest(number);
+}
+
+double median_mass(std::vector<double> masses) {
+  const auto middle = masses.begin() + static_cast<std::ptrdiff_t>(masses.size() / 2);
+  std::nth_element(masses.begin(), middle, masses.end());
+  return *middle;
+}
+
+template <int Dim>
+std::vector<double> masses_of(const Bed<Dim>& bed) {
+  std::vector<double> masses;
+  for (const Grain<Dim>& grain : bed.grains) masses.push_back(grain.mass);
+  return masses;
+}
+
+/// kn kt gamma_n gamma_t mu 1, as the pair style and the walls want them.
+std::string coefficients(const Law& law, double effective_mass) {
+  const double kn = law.normal.stiffness, kt = law.stiffness_ratio * kn;
+  const double gamma_n = 2 * law.normal.damping_ratio * std::sqrt(kn / effective_mass);
+  const double gamma_t = 2 * law.tangential_damping_ratio * std::sqrt(kt / effective_mass);
+  return shortest(kn) + " " + shortest(kt) + " " + shortest(gamma_n) + " " + shortest(gamma_t) +
+         " " + shortest(law.friction) + " 1";
+}
+
+/// Where the only wall of its direction stands at time 0, and NULL if there is none.
+template <int Dim>
+std::string wall_at(const Bed<Dim>& bed, int axis, double sign) {
+  for (Wall<Dim> wall : bed.walls) {
+    const auto* plane = std::get_if<HalfSpace<Dim>>(&wall.shape);
+    LAGRAIN_EXPECTS(plane != nullptr, "wall " + wall.name + " is no half-space");
+    if (sign * plane->normal[axis] < 0.99) continue;
+    wall.advance(0, 0);
+    return shortest(wall.point[axis]);
+  }
+  return "NULL";
+}
+
+template <int Dim>
+std::string wiggle(const Bed<Dim>& bed) {
+  if (bed.walls.empty()) return "";
+  const auto* motion = std::get_if<Shake<Dim>>(&bed.walls.front().motion);
+  if (motion == nullptr) return "";
+  return std::string(" wiggle ") + kAxes[Dim - 1] + " " + shortest(motion->amplitude.norm()) + " " +
+         shortest(1 / motion->frequency);
+}
+
+/// The first number after `label` in `text`, searched from the end.
+double number_after(const std::string& text, const std::string& label) {
+  const std::size_t at = text.rfind(label);
+  if (at == std::string::npos) throw SimulationError("LAMMPS does not report \"" + label + "\"");
+  return std::strtod(text.c_str() + at + label.size(), nullptr);
+}
+
+std::string content(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+/// Runs a program in a folder with one thread, its output going nowhere; it shares our Ctrl-C.
+int run_in(const fs::path& folder, const std::vector<std::string>& words) {
+  std::vector<char*> argv;
+  for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(nullptr);
+  const pid_t child = fork();
+  if (child == 0) {
+    setenv("OMP_NUM_THREADS", "1", 1);
+    const int nowhere = open("/dev/null", O_RDWR);
+    for (int stream = 0; stream < 3; ++stream) dup2(nowhere, stream);
+    if (chdir(folder.c_str()) != 0) _exit(99);
+    execv(argv.front(), argv.data());
+    _exit(98);
+  }
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/// "Pair | min | avg | max | ..." of the last run, as far as it is there.
+std::vector<std::pair<std::string, double>> breakdown(const std::string& log) {
+  std::vector<std::pair<std::string, double>> phases;
+  const std::size_t at = log.rfind("MPI task timing breakdown");
+  if (at == std::string::npos) return phases;
+  std::istringstream lines(log.substr(at));
+  std::string line;
+  std::getline(lines, line);  // two lines of headings and a rule
+  std::getline(lines, line);
+  std::getline(lines, line);
+  while (std::getline(lines, line) && line.find('|') != std::string::npos) {
+    std::istringstream fields(line);
+    std::string name, number;
+    std::getline(fields, name, '|');
+    std::getline(fields, number, '|');
+    std::getline(fields, number, '|');
+    name.erase(name.find_last_not_of(' ') + 1);
+    phases.emplace_back(name, std::strtod(number.c_str(), nullptr));
+  }
+  return phases;
+}
+
+template <int Dim>
+void read_dump(const fs::path& file, int count, LammpsReport<Dim>& report) {
+  std::ifstream in(file);
+  std::string line;
+  while (std::getline(in, line) && !line.starts_with("ITEM: ATOMS")) {
+  }
+  report.position.setConstant(Dim, count, std::numeric_limits<double>::quiet_NaN());
+  report.velocity = report.position;
+  int found = 0;
+  for (; std::getline(in, line); ++found) {
+    std::istringstream fields(line);
+    int id = 0;
+    std::array<double, 6> v{};
+    fields >> id;
+    for (double& value : v) fields >> value;
+    if (id < 1 || id > count) throw SimulationError("LAMMPS leaves an atom " + std::to_string(id));
+    for (std::size_t d = 0; d < Dim; ++d) {
+      report.position(static_cast<Eigen::Index>(d), id - 1) = v[d];
+      report.velocity(static_cast<Eigen::Index>(d), id - 1) = v[3 + d];
+    }
+  }
+  if (found != count) {
+    throw SimulationError("LAMMPS leaves " + std::to_string(found) + " of " +
+                          std::to_string(count) + " atoms");
+  }
+}
+
+}  // namespace
+
+std::optional<fs::path> find_lammps() {
+  if (const char* named = std::getenv("LAGRAIN_LAMMPS")) {
+    if (access(named, X_OK) == 0) return fs::absolute(named);
+    return std::nullopt;
+  }
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path != nullptr ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const fs::path program = fs::path(folder) / "lmp";
+    if (access(program.c_str(), X_OK) == 0) return program;
+  }
+  return std::nullopt;
+}
+
+std::string lammps_version(const fs::path& program) {
+  const std::string command = "'" + program.string() + "' -h 2>/dev/null";
+  FILE* pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return "unknown";
+  std::string text;
+  std::array<char, 4096> part{};
+  while (std::fgets(part.data(), part.size(), pipe) != nullptr) text += part.data();
+  pclose(pipe);
+  constexpr std::string_view kBefore = "Parallel Simulator - ";
+  const std::size_t at = text.find(kBefore);
+  if (at == std::string::npos) return "unknown";
+  const std::size_t begin = at + kBefore.size();
+  return text.substr(begin, text.find('\n', begin) - begin);
+}
+
+template <int Dim>
+std::vector<int> lammps_types(const Bed<Dim>& bed) {
+  std::vector<double> radii;
+  for (const Grain<Dim>& grain : bed.grains) radii.push_back(grain.radius);
+  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+  std::nth_element(radii.begin(), middle, radii.end());
+  std::vector<int> types;
+  for (const Grain<Dim>& grain : bed.grains) types.push_back(grain.radius > 2 * *middle ? 2 : 1);
+  return types;
+}
+
+template <int Dim>
+std::string lammps_data(const Bed<Dim>& bed) {
+  const std::vector<int> types = lammps_types<Dim>(bed);
+  // Room for what is thrown up: an atom that leaves the domain is lost.
+  double top = 0, largest = 0;
+  for (const Grain<Dim>& grain : bed.grains) {
+    top = std::max(top, grain.position[Dim - 1] + grain.radius);
+    largest = std::max(largest, grain.radius);
+  }
+  std::string text = "grains of a bed, written by lagrain\n\n" + std::to_string(bed.count()) +
+                     " atoms\n" + std::to_string(*std::max_element(types.begin(), types.end())) +
+                     " atom types\n\n";
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string name = kAxes[static_cast<std::size_t>(axis)];
+    const bool flat = axis == 2 && Dim == 2;
+    const double high = axis == Dim - 1 ? 2 * top + 1
+                        : flat          ? 0.5
+                                        : bed.size[std::min(axis, Dim - 1)];
+    const double room = flat ? 0 : largest;
+    text += shortest((flat ? -0.5 : 0) - room) + " " + shortest(high + room) + " " + name + "lo " +
+            name + "hi\n";
+  }
+  text += "\nAtoms # sphere\n\n";
+  for (std::size_t i = 0; i < bed.grains.size(); ++i) {
+    const Grain<Dim>& grain = bed.grains[i];
+    text += std::to_string(i + 1) + " " + std::to_string(types[i]) + " " +
+            shortest(2 * grain.radius) + " " + shortest(grain.mass / grain_volume<3>(grain.radius));
+    for (int axis = 0; axis < 3; ++axis) {
+      append(text, axis < Dim ? grain.position[std::min(axis, Dim - 1)] : 0);
+    }
+    text += "\n";
+  }
+  text += "\nVelocities\n\n";
+  for (std::size_t i = 0; i < bed.grains.size(); ++i) {
+    const Grain<Dim>& grain = bed.grains[i];
+    text += std::to_string(i + 1);
+    for (int axis = 0; axis < 3; ++axis) {
+      append(text, axis < Dim ? grain.velocity[std::min(axis, Dim - 1)] : 0);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const int mine = Dim == 3 ? axis : axis == 2 ? 0 : -1;
+      append(text, mine >= 0 ? grain.omega[mine] : 0);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+template <int Dim>
+std::string lammps_input(const Bed<Dim>& bed, const LammpsPlan& plan) {
+  const double mass = median_mass(masses_of(bed));
+  double smallest = bed.grains.front().radius;
+  for (const Grain<Dim>& grain : bed.grains) smallest = std::min(smallest, grain.radius);
+  std::string text =
+      "units si\ndimension " + std::to_string(Dim) + "\nboundary f f " + (Dim == 2 ? "p" : "f") +
+      "\natom_style sphere\nnewton off\ncomm_modify vel yes\nread_data data.lammps\n";
+  text += "neighbor " + shortest(kLammpsSkin * smallest) + (plan.multi ? " multi" : " bin") +
+          "\nneigh_modify delay 0 every 1 check yes one 20000 page 400000\n";
+  text += "pair_style gran/hooke/history " + coefficients(bed.law, mass / 2) +
+          "\npair_coeff * *\ntimestep " + shortest(bed.setting.time_step) + "\n";
+  text += std::string("fix motion all nve/sphere") + (Dim == 2 ? " disc" : "") + "\n";
+  text += "fix gravity all gravity " + shortest(bed.setting.gravity.norm()) +
+          (Dim == 2 ? " vector 0 -1 0\n" : " vector 0 0 -1\n");
+  for (int axis = 0; axis < Dim; ++axis) {
+    const std::string name = kAxes[static_cast<std::size_t>(axis)];
+    const std::string low = wall_at<Dim>(bed, axis, 1), high = wall_at<Dim>(bed, axis, -1);
+    if (low == "NULL" && high == "NULL") continue;
+    text += "fix walls_" + name + " all wall/gran hooke/history " + coefficients(bed.law, mass) +
+            " " + name + "plane " + low + " " + high + wiggle(bed) + "\n";
+  }
+  if (Dim == 2) text += "fix flat all enforce2d\n";
+  text += "thermo_style custom step ke\nthermo 1000000\n";
+  if (plan.warm_up > 0) text += "run " + std::to_string(plan.warm_up) + "\n";
+  text += "run " + std::to_string(plan.steps) + "\n";
+  text +=
+      std::string("write_dump all custom end.dump id x y z vx vy vz modify format float %.17g") +
+      " sort id\n";
+  return text;
+}
+
+template <int Dim>
+LammpsReport<Dim> run_lammps(const fs::path& program, const fs::path& folder, const Bed<Dim>& bed,
+                             const LammpsPlan& plan) {
+  make_folder(folder);
+  write_file(folder / "data.lammps", lammps_data<Dim>(bed));
+  write_file(folder / "in.lammps", lammps_input<Dim>(bed, plan));
+  const int code = run_in(
+      folder, {program.string(), "-in", "in.lammps", "-log", "log.lammps", "-screen", "none"});
+  const std::string log = content(folder / "log.lammps");
+  if (code != 0) {
+    const std::size_t at = log.find("ERROR");
+    throw SimulationError(
+        "LAMMPS ended with code " + std::to_string(code) +
+        (at == std::string::npos ? "" : ": " + log.substr(at, log.find('\n', at) - at)));
+  }
+  LammpsReport<Dim> report;
+  report.wall_seconds = number_after(log, "Loop time of ");
+  // "98.7% CPU use with ..." follows the times: the number stands before its name.
+  const std::size_t use = log.rfind("% CPU use");
+  const std::size_t line = use == std::string::npos ? use : log.rfind('\n', use);
+  const double share = line == std::string::npos ? 100 : std::strtod(&log[line + 1], nullptr);
+  report.cpu_seconds = report.wall_seconds * share / 100;
+  report.phases = breakdown(log);
+  report.neighbours = static_cast<std::int64_t>(number_after(log, "Total # of neighbors = "));
+  report.builds = static_cast<std::int64_t>(number_after(log, "Neighbor list builds = "));
+  report.dangerous = static_cast<std::int64_t>(number_after(log, "Dangerous builds = "));
+  read_dump<Dim>(folder / "end.dump", bed.count(), report);
+  fs::remove(folder / "end.dump");
+  return report;
+}
+
+template std::vector<int> lammps_types<2>(const Bed<2>&);
+template std::vector<int> lammps_types<3>(const Bed<3>&);
+template std::string lammps_data<2>(const Bed<2>&);
+template std::string lammps_data<3>(const Bed<3>&);
+template std::string lammps_input<2>(const Bed<2>&, const LammpsPlan&);
+template std::string lammps_input<3>(const Bed<3>&, const LammpsPlan&);
+template LammpsReport<2> run_lammps<2>(const fs::path&, const fs::path&, const Bed<2>&,
+                                       const LammpsPlan&);
+template LammpsReport<3> run_lammps<3>(const fs::path&, const fs::path&, const Bed<3>&,
+                                       const LammpsPlan&);
+
+}  // namespace lagrain::bench

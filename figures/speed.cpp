@@ -1,0 +1,609 @@
+#include "speed.hpp"
+
+#include "beds.hpp"
+#include "contenders.hpp"
+#include "lammps.hpp"
+
+#include <lagrain/audit.hpp>
+#include <lagrain/cell_grid.hpp>
+#include <lagrain/observe.hpp>
+
+#include <time.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+namespace lagrain::bench {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kRounds = 3;
+constexpr int kAudits = 4;  // in the course of the measured steps
+
+/// Processor time of this thread [s]; a shared machine takes the wall clock's time away.
+double processor_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return kUnknown;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Seconds of the wall clock that the simulation has spent so far, phase by phase; what it does not
+/// name is the rest of the step.
+template <class Sim>
+std::vector<Phase> phases_so_far(const Sim& sim) {
+  const PhaseTimes& t = sim.times();
+  return {{"neighbourhood", 1e9 * t.refresh},
+          {"grain forces", 1e9 * t.pairs},
+          {"wall forces", 1e9 * t.walls},
+          {"integration", 1e9 * t.integration}};
+}
+
+/// How many steps, and who takes part.
+struct Plan {
+  int warm_up = 0;
+  int steps = 0;
+  int rounds = kRounds;
+  bool oracle = true;
+  bool rebuilt = true;
+  bool lammps = true;
+  bool multi = false;  ///< LAMMPS with bins by size as well
+  bool bin = true;     ///< LAMMPS with equal bins
+};
+
+/// What one run of a contender gives.
+template <int Dim>
+struct Sample {
+  double cpu = 0;  ///< [s], of the measured steps
+  std::vector<Phase> phases;
+  RunErrors errors;
+  Columns<Dim> position;  ///< by id, at the end [m]
+};
+
+/// Contacts, overlaps, load and kinetic energy of a state, by a search of its own.
+template <int Dim>
+void examine(const Bed<Dim>& bed, const Columns<Dim>& x, const Columns<Dim>& v, RunErrors& errors) {
+  const int n = bed.count();
+  Eigen::VectorXd radius(n), no_margin = Eigen::VectorXd::Zero(n);
+  for (int i = 0; i < n; ++i) radius[i] = bed.grains[static_cast<std::size_t>(i)].radius;
+  std::vector<Pair> touching;
+  if (radius.maxCoeff() < 8 * radius.minCoeff()) {
+    CellGrid<Dim>{}.near_pairs(x, radius, no_margin, touching);
+  } else {
+    TriangulationNeighbourhood<Dim>{}.near_pairs(x, radius, no_margin, touching);
+  }
+  double sum = 0, deepest = 0, load = 0, weight = 0, kinetic = 0;
+  for (const auto& [i, j] : touching) {
+    const double overlap =
+        (radius[i] + radius[j] - (x.col(i) - x.col(j)).norm()) / std::min(radius[i], radius[j]);
+    sum += overlap;
+    deepest = std::max(deepest, overlap);
+  }
+  for (int i = 0; i < n; ++i) {
+    const double mass = bed.grains[static_cast<std::size_t>(i)].mass;
+    load += bed.law.normal.stiffness * std::max(0.0, radius[i] - x(Dim - 1, i));
+    weight += mass * kGravity;
+    kinetic += 0.5 * mass * v.col(i).squaredNorm();
+  }
+  const auto contacts = static_cast<double>(touching.size());
+  errors.contacts_per_grain = contacts / n;
+  errors.mean_overlap = contacts > 0 ? sum / contacts : 0;
+  errors.largest_overlap = deepest;
+  if (!bed.walls.front().moves()) errors.floor_load = load / weight;
+  errors.kinetic = kinetic;
+}
+
+/// Phases in nanoseconds of processor time per grain and step: shares of the wall clock, because a
+/// phase of nanoseconds cannot ask for the processor's.
+std::vector<Phase> per_grain_step(const std::vector<Phase>& spent, double wall, double cpu,
+                                  double grain_steps) {
+  std::vector<Phase> phases;
+  double rest = 1;
+  for (const Phase& phase : spent) {
+    const double share = 1e-9 * phase.ns / wall;
+    phases.push_back({phase.name, 1e9 * share * cpu / grain_steps});
+    rest -= share;
+  }
+  phases.push_back({"rest of the step", 1e9 * rest * cpu / grain_steps});
+  return phases;
+}
+
+/// Runs lagrain with a neighbourhood.
+/// @param careful measure the errors too, outside of the measured time
+template <int Dim, class N>
+Sample<Dim> run_lagrain(const Bed<Dim>& bed, const Plan& plan, N neighbourhood, bool careful,
+                        const Checkpoint& checkpoint) {
+  auto sim = simulate<Dim, N>(bed, std::move(neighbourhood));
+  sim.measure_phases(true);
+  for (int s = 0; s < plan.warm_up; ++s) sim.step();
+  checkpoint();
+
+  Sample<Dim> sample;
+  ContactAudit<Dim> audit;
+  const Ledger start = careful ? energy_ledger(sim) : Ledger{};
+  const auto refreshes = sim.refreshes();
+  std::vector<Phase> spent = phases_so_far(sim);
+  double wall = 0, near = 0;
+  for (int part = 0; part < kAudits; ++part) {
+    const int end = plan.steps * (part + 1) / kAudits;
+    const double wall_before = wall_seconds(), before = processor_seconds();
+    for (int s = plan.steps * part / kAudits; s < end; ++s) sim.step();
+    sample.cpu += processor_seconds() - before;
+    wall += wall_seconds() - wall_before;
+    checkpoint();
+    if (!careful) continue;
+    const std::vector<Pair> pairs = sim.near_pairs();
+    audit.check(sim.grains().position, sim.grains().radius, pairs);
+    near = static_cast<double>(pairs.size());
+  }
+  const std::vector<Phase> now = phases_so_far(sim);
+  for (std::size_t k = 0; k < spent.size(); ++k) spent[k].ns = now[k].ns - spent[k].ns;
+  const double grain_steps = static_cast<double>(bed.count()) * plan.steps;
+  sample.phases = per_grain_step(spent, wall, sample.cpu, grain_steps);
+  sample.position = sim.grains().position;
+  if (!careful) return sample;
+
+  RunErrors& errors = sample.errors;
+  examine<Dim>(bed, sim.grains().position, sim.grains().velocity, errors);
+  errors.missed = static_cast<double>(audit.missed());
+  errors.audited = static_cast<double>(audit.contacts());
+  const Ledger end = energy_ledger(sim);
+  const double turnover =
+      std::max({end.kinetic + end.elastic,
+                end.dashpot + end.friction - start.dashpot - start.friction, 1e-300});
+  errors.energy_residual = residual(end, start) / turnover;
+  errors.near_per_contact = near / (errors.contacts_per_grain * bed.count());
+  errors.refreshes = 1000 * static_cast<double>(sim.refreshes() - refreshes) / plan.steps;
+  return sample;
+}
+
+/// What the triangulation answers in a run, for the oracle.
+template <int Dim>
+Answers<Dim> record_answers(const Bed<Dim>& bed, int steps, const Checkpoint& checkpoint) {
+  RecordingNeighbourhood<Dim> recorder;
+  const auto answers = recorder.answers();
+  auto sim = simulate<Dim, RecordingNeighbourhood<Dim>>(bed, std::move(recorder));
+  note_touching<Dim>(*answers, sim.grains().position, sim.grains().radius);
+  for (int s = 0; s < steps; ++s) {
+    sim.step();
+    note_touching<Dim>(*answers, sim.grains().position, sim.grains().radius);
+    if (s % 50 == 0) checkpoint();
+  }
+  return std::move(*answers);
+}
+
+template <int Dim>
+Sample<Dim> run_lammps_sample(const fs::path& program, const fs::path& folder, const Bed<Dim>& bed,
+                              const LammpsPlan& plan) {
+  const LammpsReport<Dim> report = run_lammps<Dim>(program, folder, bed, plan);
+  Sample<Dim> sample;
+  sample.cpu = report.cpu_seconds;
+  const double grain_steps = static_cast<double>(bed.count()) * plan.steps;
+  std::vector<Phase> spent;
+  for (const auto& [name, seconds] : report.phases) {
+    if (name == "Neigh") spent.push_back({"neighbourhood", 1e9 * seconds});
+    if (name == "Pair") spent.push_back({"grain forces", 1e9 * seconds});
+    if (name == "Modify") spent.push_back({"walls and integration", 1e9 * seconds});
+  }
+  sample.phases = per_grain_step(spent, report.wall_seconds, report.cpu_seconds, grain_steps);
+  sample.position = report.position;
+  RunErrors& errors = sample.errors;
+  examine<Dim>(bed, report.position, report.velocity, errors);
+  errors.dangerous = static_cast<double>(report.dangerous);
+  errors.near_per_contact =
+      static_cast<double>(report.neighbours) / (errors.contacts_per_grain * bed.count());
+  errors.refreshes = 1000 * static_cast<double>(report.builds) / plan.steps;
+  return sample;
+}
+
+std::string folder_name(const std::string& scene) {
+  std::string name;
+  for (const char c : scene) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (plain) {
+      name += c;
+    } else if (!name.empty() && name.back() != '_') {
+      name += '_';
+    }
+  }
+  return name;
+}
+
+/// Grains with commas between the thousands.
+std::string grouped(int count) {
+  std::string text = std::to_string(count);
+  for (auto at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0; at -= 3) {
+    text.insert(static_cast<std::size_t>(at), 1, ',');
+  }
+  return text;
+}
+
+class Harness {
+ public:
+  Harness(const FigureOptions& options, const std::optional<fs::path>& lammps,
+          const std::function<void(const SpeedResults&)>& after_scene)
+      : options_(options), lammps_(lammps), after_scene_(after_scene) {
+    checkpoint_ = [this] {
+      if (options_.stop()) throw Interrupted();
+      options_.progress(done_ / scenes_, doing_);
+    };
+  }
+
+  SpeedResults run() {
+    std::vector<std::function<void()>> scenes;
+    add_settled(scenes);
+    add_sizes(scenes);
+    add_impacts(scenes);
+    add_moving(scenes);
+    add_growth(scenes);
+    scenes_ = static_cast<double>(scenes.size());
+    for (const auto& scene : scenes) {
+      scene();
+      ++done_;
+      after_scene_(results_);
+    }
+    return std::move(results_);
+  }
+
+ private:
+  static constexpr double kRadius = 0.02;  // of the discs, the larger ones, and of most balls [m]
+
+  bool quick() const { return options_.quick; }
+
+  /// As many steps as give each contender about the same work, whatever the number of grains.
+  Plan plan_for(int grains, double grain_steps) const {
+    Plan plan;
+    const double effort = quick() ? grain_steps / 40 : grain_steps;
+    plan.steps = std::clamp(static_cast<int>(effort / grains), 20, 3000);
+    plan.warm_up = std::min(100, plan.steps / 2);
+    if (quick()) plan.rounds = 2;
+    return plan;
+  }
+
+  // Beds. Each tile settles once.
+
+  const Bed<2>& disc_tile() {
+    const int count = quick() ? 250 : 1000;
+    return tile<2>({count, kRadius, 0.7 * kRadius, quick() ? 0.42 : 0.6});
+  }
+  /// A quarter of the unit cube's grains in a quarter of its area; an eighth as many if quick, of
+  /// twice the radius.
+  const Bed<3>& ball_tile(int count, double radius) {
+    const double larger = quick() ? 2 * radius : radius;
+    return tile<3>({quick() ? count / 8 : count, larger, larger, 0.5});
+  }
+  template <int Dim>
+  const Bed<Dim>& tile(const Pour<Dim>& what) {
+    auto& tiles = tiles_of<Dim>();
+    const std::pair<int, double> key{what.count, what.radius};
+    auto at = tiles.find(key);
+    if (at == tiles.end()) {
+      doing_ = "settling " + std::to_string(what.count) + (Dim == 2 ? " discs" : " spheres");
+      at = tiles.emplace(key, pour<Dim>(what, checkpoint_)).first;
+    }
+    return at->second;
+  }
+  template <int Dim>
+  std::map<std::pair<int, double>, Bed<Dim>>& tiles_of() {
+    if constexpr (Dim == 2) {
+      return disc_tiles_;
+    } else {
+      return ball_tiles_;
+    }
+  }
+
+  /// Without its highest grains, as long as there are more than `count`.
+  static Bed<3> trimmed(Bed<3> bed, int count) {
+    std::stable_sort(bed.grains.begin(), bed.grains.end(),
+                     [](const auto& a, const auto& b) { return a.position.z() < b.position.z(); });
+    if (bed.count() > count) bed.grains.resize(static_cast<std::size_t>(count));
+    return bed;
+  }
+
+  // Scenes.
+
+  void add_settled(std::vector<std::function<void()>>& scenes) {
+    scenes.emplace_back([this] {
+      const Bed<2> bed = tiled<2>(disc_tile(), {quick() ? 4 : 20});
+      compete<2>(kSettledGroup, "discs", bed, plan_for(bed.count(), 6e6), bed.count());
+    });
+    struct Cube {
+      int tile;
+      int count;
+      double radius;
+    };
+    // The paper's boxes, each made of four quarters.
+    for (const Cube& cube : {Cube{371, 1484, 0.04}, {875, 3498, 0.03}, {1736, 6944, 0.02}}) {
+      if (quick() && cube.tile != 371) continue;
+      scenes.emplace_back([this, cube] {
+        const Bed<3> bed = trimmed(tiled<3>(ball_tile(cube.tile, cube.radius), {2, 2}), cube.count);
+        compete<3>(kSettledGroup, "spheres", bed, plan_for(bed.count(), 3e6), bed.count());
+      });
+    }
+    if (quick()) return;
+    scenes.emplace_back([this] {
+      const Bed<3> bed = tiled<3>(ball_tile(1736, kRadius), {6, 6});
+      Plan plan = plan_for(bed.count(), 3e6);
+      plan.rounds = 2;
+      plan.rebuilt = false;
+      compete<3>(kSettledGroup, "spheres", bed, plan, bed.count());
+    });
+  }
+
+  template <int Dim>
+  void mixture(const Bed<Dim>& tile, const std::vector<int>& copies, int ratio, int large) {
+    Bed<Dim> bed = tiled<Dim>(tile, copies);
+    const double small = bed.grains.front().radius;
+    const double largest =
+        std::max_element(bed.grains.begin(), bed.grains.end(), [](const auto& a, const auto& b) {
+          return a.radius < b.radius;
+        })->radius;
+    doing_ = "sizes 1 : " + std::to_string(ratio);
+    if (large > 0)
+      put_large_grains<Dim>(bed, ratio * (Dim == 3 ? small : largest), large, checkpoint_);
+    Plan plan = plan_for(bed.count(), 3e6);
+    plan.multi = ratio > 1;
+    plan.bin = ratio <= 10;
+    plan.rebuilt = false;
+    compete<Dim>(kSizesGroup,
+                 std::string(Dim == 2 ? "discs" : "spheres") + " 1 : " + std::to_string(ratio), bed,
+                 plan, ratio);
+  }
+  void add_sizes(std::vector<std::function<void()>>& scenes) {
+    struct Mix {
+      int ratio, tiles, large;
+    };
+    for (const Mix& mix : {Mix{1, 20, 0}, {10, 21, 10}, {30, 22, 4}, {100, 30, 2}}) {
+      if (quick() && mix.ratio > 10) continue;
+      scenes.emplace_back([this, mix] {
+        mixture<2>(disc_tile(), {quick() ? 4 : mix.tiles}, mix.ratio,
+                   quick() ? std::min(mix.large, 2) : mix.large);
+      });
+    }
+    if (quick()) return;
+    for (const Mix& mix : {Mix{1, 3, 0}, {10, 3, 3}}) {
+      scenes.emplace_back([this, mix] {
+        mixture<3>(ball_tile(1736, kRadius), {mix.tiles, 3}, mix.ratio, mix.large);
+      });
+    }
+  }
+
+  /// The settled box, five times as hard, and above its middle a ball of five radii.
+  Bed<3> target() {
+    constexpr double kHarder = 5, kBall = 5;
+    Bed<3> tile = ball_tile(quick() ? 371 : 1736, quick() ? 2 * kRadius : kRadius);
+    const double r = tile.grains.front().radius;
+    doing_ = "making the target";
+    settle<3>(tile, r, r, {{1 / kHarder, 2}}, checkpoint_);
+    Bed<3> bed = tiled<3>(tile, {2, 2});
+    choose_law<3>(bed, r, r, kRestitution, 1 / kHarder);
+    Grain<3> ball;
+    ball.radius = kBall * r;
+    ball.mass = kDensity * grain_volume<3>(ball.radius);
+    ball.position = 0.5 * bed.size;
+    ball.position.z() = ball.radius;
+    for (const Grain<3>& grain : bed.grains) {
+      const double reach = 1.0001 * (ball.radius + grain.radius);
+      const double beside = (ball.position - grain.position).head<2>().squaredNorm();
+      if (beside >= reach * reach) continue;
+      ball.position.z() =
+          std::max(ball.position.z(), grain.position.z() + std::sqrt(reach * reach - beside));
+    }
+    bed.grains.push_back(ball);
+    return bed;
+  }
+  void add_impacts(std::vector<std::function<void()>>& scenes) {
+    const auto bed = std::make_shared<std::optional<Bed<3>>>();
+    for (const int speed : {0, 1, 10, 50}) {
+      if (quick() && speed == 1) continue;
+      scenes.emplace_back([this, bed, speed] {
+        if (!bed->has_value()) *bed = target();
+        (*bed)->grains.back().velocity = {0, 0, -static_cast<double>(speed)};
+        Plan plan = plan_for((*bed)->count(), 3e6);
+        plan.warm_up = 10;
+        plan.multi = true;
+        compete<3>(kImpactGroup, "a ball of 5 r at " + std::to_string(speed) + " m/s", **bed, plan,
+                   speed);
+      });
+    }
+  }
+
+  void add_moving(std::vector<std::function<void()>>& scenes) {
+    scenes.emplace_back([this] {
+      Bed<2> bed = tiled<2>(disc_tile(), {quick() ? 2 : 5});
+      doing_ = "a column starts to collapse";
+      bed.size[0] *= 3;  // the right wall gives way
+      bed.walls = open_box<2>(bed.size);
+      advance<2>(bed, steps_for(bed, kRadius, 6), checkpoint_);
+      compete<2>(kMovingGroup, "a column of discs collapses", bed, plan_for(bed.count(), 3e6), 0);
+    });
+    scenes.emplace_back([this] {
+      Bed<2> bed = tiled<2>(disc_tile(), {quick() ? 2 : 10});
+      doing_ = "shaking discs";
+      shake<2>(bed, kRadius, checkpoint_);
+      compete<2>(kMovingGroup, "discs shaken with 4 g", bed, plan_for(bed.count(), 3e6), 0);
+    });
+    scenes.emplace_back([this] {
+      Bed<3> bed = ball_tile(quick() ? 371 : 1736, quick() ? 2 * kRadius : kRadius);
+      doing_ = "shaking spheres";
+      shake<3>(bed, bed.grains.front().radius, checkpoint_);
+      compete<3>(kMovingGroup, "spheres shaken with 4 g", bed, plan_for(bed.count(), 3e6), 0);
+    });
+  }
+
+  void add_growth(std::vector<std::function<void()>>& scenes) {
+    for (const int tiles : quick() ? std::vector<int>{1, 4} : std::vector<int>{1, 10, 100, 1000}) {
+      scenes.emplace_back([this, tiles] {
+        const Bed<2> bed = tiled<2>(disc_tile(), {tiles});
+        Plan plan = plan_for(bed.count(), 3e6);
+        plan.oracle = plan.rebuilt = plan.lammps = false;
+        if (tiles == 1000) plan.rounds = 2;
+        compete<2>(kGrowthGroup, "discs", bed, plan, bed.count());
+      });
+    }
+  }
+
+  // The competition.
+
+  template <int Dim>
+  void compete(const std::string& group, const std::string& what, const Bed<Dim>& bed,
+               const Plan& plan, double parameter) {
+    SceneSpeed scene;
+    scene.group = group;
+    scene.name = grouped(bed.count()) + " " + what;
+    if (group != kSettledGroup && group != kGrowthGroup) {
+      scene.name = what + " (" + grouped(bed.count()) + ")";
+    }
+    scene.dimension = Dim;
+    scene.grains = bed.count();
+    scene.steps = plan.steps;
+    scene.time_step = bed.setting.time_step;
+    scene.parameter = parameter;
+
+    struct Entry {
+      std::string name;
+      std::function<Sample<Dim>(bool careful)> run;
+    };
+    std::vector<Entry> entries;
+    const auto add = [&]<class N>(const char* name, N neighbourhood) {
+      entries.push_back({name, [this, &bed, &plan, neighbourhood](bool careful) {
+                           return run_lagrain<Dim, N>(bed, plan, neighbourhood, careful,
+                                                      checkpoint_);
+                         }});
+    };
+    doing_ = scene.name;
+    add(kTriangulation, TriangulationNeighbourhood<Dim>{});
+    if (plan.oracle) {
+      const Oracle<Dim> oracle(record_answers<Dim>(bed, plan.warm_up + plan.steps, checkpoint_));
+      entries.push_back(
+          {kOracle, [this, &bed, &plan, oracle](bool careful) {
+             return without_neighbourhood(
+                 run_lagrain<Dim, Oracle<Dim>>(bed, plan, oracle, careful, checkpoint_),
+                 bed.count(), plan.steps);
+           }});
+    }
+    add(kCells, CellGrid<Dim>{});
+    if (plan.rebuilt) add(kRebuilt, RebuiltTriangulation<Dim>{});
+    if (lammps_ && plan.lammps) {
+      const auto add_lammps = [&](const char* name, bool multi) {
+        const fs::path folder =
+            options_.out / "lammps" / folder_name(scene.name + (multi ? " multi" : ""));
+        entries.push_back({name, [this, &bed, &plan, folder, multi](bool) {
+                             return run_lammps_sample<Dim>(*lammps_, folder, bed,
+                                                           {plan.warm_up, plan.steps, multi});
+                           }});
+      };
+      if (plan.bin) add_lammps(kLammps, false);
+      if (plan.multi) add_lammps(kLammpsMulti, true);
+    }
+
+    scene.contenders.resize(entries.size());
+    std::vector<bool> out(entries.size(), false);
+    std::vector<std::vector<std::vector<Phase>>> phases(entries.size());
+    Columns<Dim> reference;
+    for (int round = 0; round < plan.rounds; ++round) {
+      for (std::size_t k = 0; k < entries.size(); ++k) {
+        if (out[k]) continue;
+        Contender& contender = scene.contenders[k];
+        contender.name = entries[k].name;
+        doing_ = scene.name + ": " + contender.name + ", round " + std::to_string(round + 1);
+        checkpoint_();
+        try {
+          const Sample<Dim> sample = entries[k].run(round == 0);
+          const double grain_steps = static_cast<double>(bed.count()) * plan.steps;
+          contender.ns.push_back(1e9 * sample.cpu / grain_steps);
+          phases[k].push_back(sample.phases);
+          if (round > 0) continue;
+          contender.errors = sample.errors;
+          if (k == 0) reference = sample.position;
+          contender.errors.astray =
+              (sample.position - reference).colwise().norm().maxCoeff() / smallest_radius(bed);
+        } catch (const SimulationError& error) {
+          // Ctrl-C reaches LAMMPS too; else a contender that fails leaves the others running.
+          if (options_.stop()) throw Interrupted();
+          if (k == 0) throw;
+          results_.notes.push_back(scene.name + ", " + contender.name + ": " + error.what());
+          out[k] = true;
+        }
+      }
+    }
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      Contender& contender = scene.contenders[k];
+      for (std::size_t round = 0; round < contender.ns.size(); ++round) {
+        if (contender.ns[round] == contender.median()) contender.phases = phases[k][round];
+      }
+    }
+    std::erase_if(scene.contenders, [](const Contender& c) { return c.ns.empty(); });
+    results_.scenes.push_back(scene);
+  }
+
+  /// The oracle knows the contacts for nothing: what the run spends on asking it does not count.
+  template <int Dim>
+  static Sample<Dim> without_neighbourhood(Sample<Dim> sample, int grains, int steps) {
+    const double grain_steps = static_cast<double>(grains) * steps;
+    for (Phase& phase : sample.phases) {
+      if (phase.name != "neighbourhood") continue;
+      sample.cpu -= 1e-9 * phase.ns * grain_steps;
+      phase.ns = 0;
+    }
+    return sample;
+  }
+
+  template <int Dim>
+  static double smallest_radius(const Bed<Dim>& bed) {
+    double smallest = bed.grains.front().radius;
+    for (const Grain<Dim>& grain : bed.grains) smallest = std::min(smallest, grain.radius);
+    return smallest;
+  }
+
+  const FigureOptions& options_;
+  std::optional<fs::path> lammps_;
+  std::function<void(const SpeedResults&)> after_scene_;
+  Checkpoint checkpoint_;
+  std::string doing_;
+  double scenes_ = 1;
+  double done_ = 0;
+  SpeedResults results_;
+  std::map<std::pair<int, double>, Bed<2>> disc_tiles_;
+  std::map<std::pair<int, double>, Bed<3>> ball_tiles_;
+};
+
+}  // namespace
+
+double Contender::median() const {
+  return median_of(ns);
+}
+
+double Contender::spread() const {
+  const auto [low, high] = std::minmax_element(ns.begin(), ns.end());
+  return ns.empty() ? kUnknown : (*high - *low) / median();
+}
+
+const Contender* SceneSpeed::find(const std::string& wanted) const {
+  for (const Contender& contender : contenders) {
+    if (contender.name == wanted) return &contender;
+  }
+  return nullptr;
+}
+
+SpeedResults measure_speed(const FigureOptions& options, const std::optional<fs::path>& lammps,
+                           const std::function<void(const SpeedResults&)>& after_scene) {
+  return Harness(options, lammps, after_scene).run();
+}
+
+}  // namespace lagrain::bench
