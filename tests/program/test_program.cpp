@@ -130,6 +130,25 @@ TEST_SUITE("program") {
     CHECK(content(place / "a/frames/0001.csv") == content(place / "c/frames/0001.csv"));
   }
 
+  TEST_CASE("threads share the work, not the result; their number is a number") {
+    const Place place;
+    place.write("heap.toml", kOnTriangulation);
+
+    REQUIRE(place.run({"run", "heap.toml", "--out", "one", "--threads", "1"}) == 0);
+    REQUIRE(place.run({"run", "heap.toml", "--out", "three", "--threads", "3"}) == 0);
+
+    CHECK(content(place / "one/series.csv") == content(place / "three/series.csv"));
+    CHECK(content(place / "one/frames/0001.csv") == content(place / "three/frames/0001.csv"));
+    for (const char* wrong : {"0", "-1", "many"}) {
+      CAPTURE(wrong);
+      CHECK(place.run({"run", "heap.toml", "--out", "none", "--threads", wrong}) == 2);
+      const std::string err = place.err();
+      CHECK(std::count(err.begin(), err.end(), '\n') == 1);
+      CHECK(holds(err, "--threads"));
+      CHECK(!fs::exists(place / "none"));
+    }
+  }
+
   TEST_CASE("bad input is one sentence, exit code 2, and nothing written") {
     const Place place;
     const auto refused = [&](const std::string& name, const std::string& text) {
@@ -173,6 +192,25 @@ TEST_SUITE("program") {
     CHECK(content(place / "a/series.csv") == content(place / "b/series.csv"));
     CHECK(content(place / "a/frames/0001.csv") == content(place / "b/frames/0001.csv"));
     CHECK(content(place / "a/frames/0001.csv") == content(place / "c/frames/0001.csv"));
+  }
+
+  TEST_CASE("threads share the work, not the result; their number is a number") {
+    const Place place;
+    place.write("heap.toml", kOnTriangulation);
+
+    REQUIRE(place.run({"run", "heap.toml", "--out", "one", "--threads", "1"}) == 0);
+    REQUIRE(place.run({"run", "heap.toml", "--out", "three", "--threads", "3"}) == 0);
+
+    CHECK(content(place / "one/series.csv") == content(place / "three/series.csv"));
+    CHECK(content(place / "one/frames/0001.csv") == content(place / "three/frames/0001.csv"));
+    for (const char* wrong : {"0", "-1", "many"}) {
+      CAPTURE(wrong);
+      CHECK(place.run({"run", "heap.toml", "--out", "none", "--threads", wrong}) == 2);
+      const std::string err = place.err();
+      CHECK(std::count(err.begin(), err.end(), '\n') == 1);
+      CHECK(holds(err, "--threads"));
+      CHECK(!fs::exists(place / "none"));
+    }
     CHECK(holds(place.out(), "dimension       3\n"));
     CHECK(holds(place.out(), "bytes per grain 152, 56 of them for spin\n"));
   }
