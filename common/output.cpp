@@ -306,9 +306,9 @@ class Recorder {
       line("steps", std::to_string(run_.steps()));
     }
     const double spent = std::chrono::duration<double>(Clock::now() - begun_).count();
-    line("wall-clock time",
-         rounded(spent) + " s, " + rounded(100 * run_.neighbourhood_seconds() / spent) +
-             " % of it for the neighbourhood");
+    line("wall-clock time", rounded(spent) + " s, " +
+                                rounded(100 * run_.neighbourhood_seconds() / spent) +
+                                " % of it for the neighbourhood");
     line("lagrain", std::string(version()) + ", " + compiler());
     write_file(options_.folder / "summary.txt", text);
   }

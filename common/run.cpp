@@ -204,8 +204,8 @@ std::vector<std::pair<std::string, std::string>> facts(const Run<Dim>& run) {
                         std::to_string(cost->ladder.unstuck) +
                         (Dim == 2 ? " more where flips stuck, " : " cavities filled anew, ") +
                         std::to_string(cost->ladder.reinserted) + " put back, " +
-                        std::to_string(cost->ladder.rebuilds) +
-                        " rebuilds, " + std::to_string(cost->searched) + " range searches");
+                        std::to_string(cost->ladder.rebuilds) + " rebuilds, " +
+                        std::to_string(cost->searched) + " range searches");
   }
   return list;
 }

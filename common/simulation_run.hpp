@@ -81,23 +81,24 @@ class SimulationRun final : public Run<Dim> {
 
   std::vector<ContactRecord<Dim>> contacts() const override {
     std::vector<ContactRecord<Dim>> list;
-    sim_.for_each_contact(
-        [&](Pair pair, const Touch<Dim>& touch, const Response<Dim>& response, const auto&) {
-          ContactRecord<Dim> record{pair.i, pair.j, -1, touch.overlap, touch.normal, response.force};
-          if (record.i > record.j) {
-            std::swap(record.i, record.j);
-            record.normal = -record.normal;
-            record.force = -record.force;
-          }
-          list.push_back(record);
-        });
+    sim_.for_each_contact([&](Pair pair, const Touch<Dim>& touch, const Response<Dim>& response,
+                              const auto&) {
+      ContactRecord<Dim> record{pair.i, pair.j, -1, touch.overlap, touch.normal, response.force};
+      if (record.i > record.j) {
+        std::swap(record.i, record.j);
+        record.normal = -record.normal;
+        record.force = -record.force;
+      }
+      list.push_back(record);
+    });
     const auto grains = static_cast<std::ptrdiff_t>(list.size());
     sim_.for_each_wall_contact(
         [&](WallPair pair, const Touch<Dim>& touch, const Response<Dim>& response, const auto&) {
           list.push_back({pair.i, -1, pair.wall, touch.overlap, touch.normal, response.force});
         });
-    std::sort(list.begin(), list.begin() + grains,
-              [](const auto& a, const auto& b) { return std::pair(a.i, a.j) < std::pair(b.i, b.j); });
+    std::sort(list.begin(), list.begin() + grains, [](const auto& a, const auto& b) {
+      return std::pair(a.i, a.j) < std::pair(b.i, b.j);
+    });
     std::sort(list.begin() + grains, list.end(), [](const auto& a, const auto& b) {
       return std::pair(a.wall, a.i) < std::pair(b.wall, b.i);
     });

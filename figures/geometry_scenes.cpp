@@ -137,8 +137,7 @@ Settled settle(int count, double smallest, double largest, double width, std::ui
   ContactAudit<2> audit;
   while (simulation.time() < result.time) {
     simulation.step();
-    audit.check(simulation.grains().position, simulation.grains().radius,
-                simulation.near_pairs());
+    audit.check(simulation.grains().position, simulation.grains().radius, simulation.near_pairs());
   }
 
   result.discs = {simulation.grains().position, simulation.grains().radius};

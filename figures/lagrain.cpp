@@ -188,7 +188,8 @@ int main(int argc, char** argv) {
   CLI::App* run_app = app.add_subcommand("run", "Run a scene and write a folder");
   run_app->add_option("scene", run.scene, "scene file (TOML)")->required();
   run_app->add_option("--out", run.out, "folder to write (default: runs/NAME of the scene)");
-  run_app->add_option("--threads", run.threads, "threads that share a step (default: as many as pay)")
+  run_app
+      ->add_option("--threads", run.threads, "threads that share a step (default: as many as pay)")
       ->check(CLI::Range(1, 1024));
   run_app->add_flag("--explain", run.explain, "say what the scene is made of; run nothing");
 

@@ -295,7 +295,8 @@ Plot group_plot(const SpeedResults& results, const std::string& group, int dimen
     }
   }
   plot.y.low = low / 1.5;
-  plot.y.high = high * 6;
+  const double room = 0.05 + 0.08 * static_cast<double>(plot.series.size());  // of the height
+  plot.y.high = high * std::pow(high / (low / 1.5), room / (1 - room));
   return plot;
 }
 

@@ -2,10 +2,10 @@
 /// @file
 /// The inner loop of a time step: all contacts of a list, several at once.
 ///
-/// A law is written over a number type (touch.hpp). Here it is run with Lanes as wide as the machine
-/// allows, chosen at run time; what does not fill the lanes runs with `double`. Forces are always
-/// added in the order of the list, and losses in the same parts, so results do not depend on the
-/// instruction set, bit for bit.
+/// A law is written over a number type (touch.hpp). Here it is run with Lanes as wide as the
+/// machine allows, chosen at run time; what does not fill the lanes runs with `double`. Forces are
+/// always added in the order of the list, and losses in the same parts, so results do not depend on
+/// the instruction set, bit for bit.
 
 #include <lagrain/cundall_strack.hpp>
 #include <lagrain/hertz.hpp>
@@ -246,7 +246,8 @@ struct Sweep {
       i[k] = table.pairs()[first + k].i;
       j[k] = table.pairs()[first + k].j;
     }
-    const auto body_i = read_bodies<Real>(scene.grains, i), body_j = read_bodies<Real>(scene.grains, j);
+    const auto body_i = read_bodies<Real>(scene.grains, i),
+               body_j = read_bodies<Real>(scene.grains, j);
     const auto [touching, touch] = touch_of(body_i, body_j);
     if (!any(touching)) {
       write_memory(table, first, Memory{});
@@ -254,8 +255,8 @@ struct Sweep {
       return;
     }
     Memory memory = read_memory(table, first);
-    const Response<Dim, Real> response =
-        respond(touch, touching, i, [&](std::size_t k) { return kind(j[k]); }, memory);
+    const Response<Dim, Real> response = respond(
+        touch, touching, i, [&](std::size_t k) { return kind(j[k]); }, memory);
     write_memory(table, first, memory);
     const Real limit = scene.largest_overlap * smaller(body_i.radius, body_j.radius);
     note(response, only_if(touching, Real(touch.overlap - limit)), part);
@@ -324,8 +325,8 @@ struct Sweep {
     const LoadRows push(LoadColumns(response.force, turn));
     for (std::size_t k = 0; k < kWidth; ++k) {
       push.add_to(scene.loads[i[k]], k);
-      wall_forces[table.pairs()[first + k].wall] -=
-          Vec<Dim>::NullaryExpr([&](Eigen::Index d) { return lane(response.force[d], static_cast<int>(k)); });
+      wall_forces[table.pairs()[first + k].wall] -= Vec<Dim>::NullaryExpr(
+          [&](Eigen::Index d) { return lane(response.force[d], static_cast<int>(k)); });
     }
   }
 };
@@ -380,10 +381,10 @@ struct Sweeps {
   }
   static Tally walls(const Scene& scene, PairTable<WallPair, Memory>& table, std::size_t begin,
                      std::size_t end, Vec<Dim>* wall_forces) {
-    return sweep_over<Dim, Law, Real, false>(
-        scene, begin, end, [&](auto& sweep, std::size_t first, std::size_t part) {
-          sweep.walls(table, first, part, wall_forces);
-        });
+    return sweep_over<Dim, Law, Real, false>(scene, begin, end,
+                                             [&](auto& sweep, std::size_t first, std::size_t part) {
+                                               sweep.walls(table, first, part, wall_forces);
+                                             });
   }
 };
 
@@ -395,22 +396,22 @@ struct Sweeps {
 #define LAGRAIN_FOR_AVX2
 #define LAGRAIN_FOR_AVX512
 #endif
-#define LAGRAIN_COMPILED_SWEEPS(Name, Attributes, Real)                                       \
-  template <int Dim, class Law>                                                               \
-  struct Name {                                                                               \
-    using S = Sweeps<Dim, Law, Real>;                                                         \
-    using Memory = typename S::Memory;                                                        \
-    template <bool kOneLaw>                                                                   \
-    Attributes static Tally pairs(const typename S::Scene& scene,                             \
-                                  PairTable<Pair, Memory>& table, std::size_t begin,          \
-                                  std::size_t end, PairLoad<Dim, Law::needs>* out) {          \
-      return S::template pairs<kOneLaw>(scene, table, begin, end, out);                       \
-    }                                                                                         \
-    Attributes static Tally walls(const typename S::Scene& scene,                             \
-                                  PairTable<WallPair, Memory>& table, std::size_t begin,      \
-                                  std::size_t end, Vec<Dim>* wall_forces) {                   \
-      return S::walls(scene, table, begin, end, wall_forces);                                 \
-    }                                                                                         \
+#define LAGRAIN_COMPILED_SWEEPS(Name, Attributes, Real)                                           \
+  template <int Dim, class Law>                                                                   \
+  struct Name {                                                                                   \
+    using S = Sweeps<Dim, Law, Real>;                                                             \
+    using Memory = typename S::Memory;                                                            \
+    template <bool kOneLaw>                                                                       \
+    Attributes static Tally pairs(const typename S::Scene& scene, PairTable<Pair, Memory>& table, \
+                                  std::size_t begin, std::size_t end,                             \
+                                  PairLoad<Dim, Law::needs>* out) {                               \
+      return S::template pairs<kOneLaw>(scene, table, begin, end, out);                           \
+    }                                                                                             \
+    Attributes static Tally walls(const typename S::Scene& scene,                                 \
+                                  PairTable<WallPair, Memory>& table, std::size_t begin,          \
+                                  std::size_t end, Vec<Dim>* wall_forces) {                       \
+      return S::walls(scene, table, begin, end, wall_forces);                                     \
+    }                                                                                             \
   }
 LAGRAIN_COMPILED_SWEEPS(ScalarSweeps, [[gnu::flatten]], double);
 LAGRAIN_COMPILED_SWEEPS(Avx2Sweeps, LAGRAIN_FOR_AVX2, Lanes<4>);

@@ -17,8 +17,8 @@ struct NoMemory {
   bool operator==(const NoMemory&) const = default;
 };
 
-/// A law of contact in Dim dimensions, written over a number type: double for one contact, Lanes for
-/// several at once.
+/// A law of contact in Dim dimensions, written over a number type: double for one contact, Lanes
+/// for several at once.
 ///
 /// What a contact remembers is `Memory<Dim, Real>`: kReals numbers, reached by [], zero at first,
 /// and what the partner's side of the contact remembers by `seen_from_partner`.

@@ -60,8 +60,7 @@ struct CundallStrack {
     const Vec<Dim, Real> ft = cut<Dim, Real>(-(kt * xi + gt * touch.slip), friction * fn);
     memory.stretch = xi;
     response.force = fn * touch.normal + ft;
-    response.friction_loss =
-        -dot(ft, touch.slip) * time_step - (0.5 * kt * squared(xi) - stored);
+    response.friction_loss = -dot(ft, touch.slip) * time_step - (0.5 * kt * squared(xi) - stored);
     return response;
   }
 
@@ -100,9 +99,8 @@ struct CundallStrack {
   static Vec<Dim, Real> turned_with(const Vec<Dim, Real>& stretch, const Touch<Dim, Real>& touch,
                                     double time_step) {
     using std::sqrt;
-    const Vec<Dim, Real> flat =
-        stretch - dot(stretch, touch.normal) * touch.normal +
-        cross<Real>(SpinVec<Dim, Real>(time_step * touch.twist), stretch);
+    const Vec<Dim, Real> flat = stretch - dot(stretch, touch.normal) * touch.normal +
+                                cross<Real>(SpinVec<Dim, Real>(time_step * touch.twist), stretch);
     const Real before = squared(stretch), after = squared(flat);
     return select(after > Real(0), Real(sqrt(before / after)), Real(1)) * flat;
   }

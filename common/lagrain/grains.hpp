@@ -26,8 +26,8 @@ struct SpinState {
 
 struct NoSpin {};
 
-/// N discs (Dim = 2) or spheres (Dim = 3), as they are given to a simulation and as it shows them. A frictionless `Grains` has no member `omega`: it is
-/// absent, not zero.
+/// N discs (Dim = 2) or spheres (Dim = 3), as they are given to a simulation and as it shows them.
+/// A frictionless `Grains` has no member `omega`: it is absent, not zero.
 ///
 /// A pinned grain has inverse mass and inverse inertia 0: forces on it are measured, it stays.
 template <int Dim, Needs needs>

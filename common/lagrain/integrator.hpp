@@ -2,8 +2,8 @@
 /// @file
 /// Integrators of the motion, written for one coordinate or vector at a time.
 ///
-/// A step evaluates the forces kEvaluations times. Before evaluation k, `advance` brings place x and
-/// velocity v there; `finish` completes the step once the last forces are known. Both get the
+/// A step evaluates the forces kEvaluations times. Before evaluation k, `advance` brings place x
+/// and velocity v there; `finish` completes the step once the last forces are known. Both get the
 /// acceleration a by the forces evaluated last, and `old`, which advance may set and finish read.
 /// The simulation joins `finish` with the `advance` that follows, so that a step passes over the
 /// grains once. Spins are velocities whose angle x nobody asks for.

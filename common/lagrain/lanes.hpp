@@ -95,7 +95,8 @@ inline bool any(const LaneMask<2>& condition) {
 }
 inline bool any(const LaneMask<4>& condition) {
   const LaneMask<4>::Vector& v = condition.v;
-  return any(LaneMask<2>(__builtin_shufflevector(v, v, 0, 1) | __builtin_shufflevector(v, v, 2, 3)));
+  return any(
+      LaneMask<2>(__builtin_shufflevector(v, v, 0, 1) | __builtin_shufflevector(v, v, 2, 3)));
 }
 inline bool any(const LaneMask<8>& condition) {
   const LaneMask<8>::Vector& v = condition.v;

@@ -142,9 +142,9 @@ class NearList {
   }
 
  private:
-  static constexpr double kHorizon = 40;       // steps that a grain may keep its speed
-  static constexpr double kCeiling = 0.1;      // of a radius: wider lists cost more than refreshes
-  static constexpr double kLeastFloor = 2e-3;  // of a radius
+  static constexpr double kHorizon = 100;      // steps that a grain may keep its speed
+  static constexpr double kCeiling = 0.3;      // of a radius: wider lists cost more than refreshes
+  static constexpr double kLeastFloor = 1e-4;  // of a radius
   static constexpr double kMostFloor = 5e-2;
 
   struct Stay {
@@ -162,7 +162,7 @@ class NearList {
     if (refreshes_ > 0) {
       const std::int64_t age = step - last_refresh_;
       if (age < 15) floor_ = std::min(floor_ * 1.25, kMostFloor);
-      if (age > 60) floor_ = std::max(floor_ * 0.8, kLeastFloor);
+      if (age > 60) floor_ = std::max(floor_ * 0.7, kLeastFloor);
     }
     last_refresh_ = step;
   }

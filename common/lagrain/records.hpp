@@ -37,7 +37,9 @@ struct alignas(Dim == 2 ? 16 : 32) GrainRecord {
   Eigen::Map<Vec<Dim>> velocity() { return Eigen::Map<Vec<Dim>>(&at[kVelocity]); }
   Eigen::Map<const Vec<Dim>> velocity() const { return Eigen::Map<const Vec<Dim>>(&at[kVelocity]); }
   Eigen::Map<SpinVec<Dim>> omega() { return Eigen::Map<SpinVec<Dim>>(&at[kOmega]); }
-  Eigen::Map<const SpinVec<Dim>> omega() const { return Eigen::Map<const SpinVec<Dim>>(&at[kOmega]); }
+  Eigen::Map<const SpinVec<Dim>> omega() const {
+    return Eigen::Map<const SpinVec<Dim>>(&at[kOmega]);
+  }
   double radius() const { return at[kRadius]; }
 };
 
@@ -54,7 +56,9 @@ struct alignas(32) LoadRecord {
   Eigen::Map<Vec<Dim>> force() { return Eigen::Map<Vec<Dim>>(&at[kForce]); }
   Eigen::Map<const Vec<Dim>> force() const { return Eigen::Map<const Vec<Dim>>(&at[kForce]); }
   Eigen::Map<SpinVec<Dim>> torque() { return Eigen::Map<SpinVec<Dim>>(&at[kTorque]); }
-  Eigen::Map<const SpinVec<Dim>> torque() const { return Eigen::Map<const SpinVec<Dim>>(&at[kTorque]); }
+  Eigen::Map<const SpinVec<Dim>> torque() const {
+    return Eigen::Map<const SpinVec<Dim>>(&at[kTorque]);
+  }
 };
 
 /// Bytes that a step reads and writes of one grain in this model: its records, what velocity Verlet

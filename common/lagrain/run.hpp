@@ -70,7 +70,7 @@ class Run {
   virtual ContactStatistics statistics() const = 0;
   virtual Ledger ledger() const = 0;
   virtual std::vector<Pair> near_pairs() const = 0;  ///< sorted
-  virtual std::int64_t refreshes() const = 0;  ///< of the near list
+  virtual std::int64_t refreshes() const = 0;        ///< of the near list
   virtual const AnyNeighbourhood<Dim>& neighbourhood() const = 0;
   /// Wall-clock time spent on knowing the near pairs [s].
   virtual double neighbourhood_seconds() const = 0;

@@ -59,9 +59,9 @@ struct PhaseTimes {
 /// the law (3), integrate (4), update the triangulation when the near list has expired (5).
 ///
 /// Inside, grains lie in *slots* along Hilbert's curve, and are put in order again when they have
-/// mixed; outside, everything speaks of the grains' numbers, which never change. Forces are summed in
-/// an order fixed by the slots, so every neighbourhood, instruction set and number of threads gives
-/// the same trajectory, bit for bit. One object is for one caller at a time.
+/// mixed; outside, everything speaks of the grains' numbers, which never change. Forces are summed
+/// in an order fixed by the slots, so every neighbourhood, instruction set and number of threads
+/// gives the same trajectory, bit for bit. One object is for one caller at a time.
 template <int Dim, ContactLaw<Dim> Law, Integrator Motion, Neighbourhood<Dim> N>
 class Simulation {
  public:
@@ -254,7 +254,6 @@ class Simulation {
         record.at[Record::kInverseInertia] = g.inverse_inertia[i];
       }
       if (!g.kind.empty()) kinds_[index(slot)] = g.kind[index(i)];
-      weigh(loads_[index(slot)]);
     }
     near_.reset(g.size(), std::max(kLeastBlock, (g.size() + kMostBlocks - 1) / kMostBlocks));
   }
@@ -292,7 +291,8 @@ class Simulation {
       return length;
     };
     const std::vector<int> order = spatial_order<Dim>(x);
-    if (way([](int k) { return k; }) <= kMixed * way([&](int k) { return order[index(k)]; })) return;
+    if (way([](int k) { return k; }) <= kMixed * way([&](int k) { return order[index(k)]; }))
+      return;
     const auto permute = [&](auto& list) {
       if (list.empty()) return;
       auto sorted = list;
@@ -384,7 +384,6 @@ class Simulation {
           if constexpr (kFinish) grain.finish(setting_.time_step);
           grain.advance(evaluation, setting_.time_step);
           grain.store(*this, slot);
-          weigh(loads_[index(slot)]);
           if (holds) inside &= near_.holds(slot, grain.x, shift);
         }
         holds = holds && inside;
@@ -404,9 +403,9 @@ class Simulation {
 
   void evaluate_forces(double t) {
     if (!near_holds_) refresh(t);
-    const ContactScene<Dim, Law> scene{records_.data(), loads_.data(), &kinds_,
-                                       &laws_,          walls_.data(), force_step_,
-                                       setting_.largest_overlap};
+    const ContactScene<Dim, Law> scene{
+        records_.data(), loads_.data(),           &kinds_, &laws_, walls_.data(),
+        force_step_,     setting_.largest_overlap};
     const int blocks = near_.blocks();
     parts_.assign(index(blocks), {});
     kept_.resize(near_.across.size());
@@ -419,7 +418,7 @@ class Simulation {
           Part& part = parts_[index(block)];
           const auto start = measuring_ ? Clock::now() : Clock::time_point{};
           part.across = kernel_.pairs(scene, near_.across, near_.first_across(block),
-                                     near_.first_across(block + 1), kept_.data());
+                                      near_.first_across(block + 1), kept_.data());
           if (measuring_) part.pair_seconds += seconds(Clock::now() - start);
         }
       }
@@ -451,8 +450,11 @@ class Simulation {
   void block_forces(const ContactScene<Dim, Law>& scene, int block) {
     Part& part = parts_[index(block)];
     const auto start = measuring_ ? Clock::now() : Clock::time_point{};
-    part.within =
-        kernel_.pairs(scene, near_.within, near_.first_within(block), near_.first_within(block + 1));
+    for (int slot = near_.first_slot(block); slot < near_.end_slot(block); ++slot) {
+      weigh(loads_[index(slot)]);
+    }
+    part.within = kernel_.pairs(scene, near_.within, near_.first_within(block),
+                                near_.first_within(block + 1));
     for (const auto& end : near_.ends(block)) {
       const PairLoad<Dim, needs>& both = kept_[index(end.pair)];
       Load& load = loads_[index(end.slot)];
@@ -463,9 +465,9 @@ class Simulation {
       }
     }
     const auto between = measuring_ ? Clock::now() : Clock::time_point{};
-    part.walls = kernel_.walls(scene, near_.walls, near_.first_wall(block),
-                                   near_.first_wall(block + 1),
-                                   wall_parts_.data() + index(block) * walls_.size());
+    part.walls =
+        kernel_.walls(scene, near_.walls, near_.first_wall(block), near_.first_wall(block + 1),
+                      wall_parts_.data() + index(block) * walls_.size());
     if (!measuring_) return;
     part.pair_seconds += seconds(between - start);
     part.wall_seconds += seconds(Clock::now() - between);

@@ -13,7 +13,7 @@ namespace lagrain {
 /// A contact of grain i with a partner j: another grain or a wall.
 template <int Dim, class Real = double>
 struct Touch {
-  Real overlap = 0;  ///< r_i + r_j - |x_i - x_j| [m], positive
+  Real overlap = 0;                                ///< r_i + r_j - |x_i - x_j| [m], positive
   Vec<Dim, Real> normal = Vec<Dim, Real>::Zero();  ///< unit vector from j to i [-]
   Real closing = 0;  ///< -(v_i - v_j) . normal [m/s], positive when approaching
   /// Tangential velocity of i against j at the contact [m/s].
@@ -75,8 +75,7 @@ MaybeTouch<Dim, Real> touch_of(const Body<Dim, needs, Real>& i, const Body<Dim, 
   touch.closing = -dot(velocity, touch.normal);
   if constexpr (needs.spin) {
     const Real half = 0.5 * touch.overlap;
-    const SpinVec<Dim, Real> rolling =
-        (i.radius - half) * i.omega + (j.radius - half) * j.omega;
+    const SpinVec<Dim, Real> rolling = (i.radius - half) * i.omega + (j.radius - half) * j.omega;
     velocity -= cross<Real>(rolling, touch.normal);
     touch.slip = velocity + touch.closing * touch.normal;
   }

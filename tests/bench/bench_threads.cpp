@@ -1,7 +1,7 @@
 /// @file
-/// What threads are worth: one simulation stepped by two threads, against two simulations stepped by
-/// one thread each at the same time. That is the fair bar on a machine whose cores share memory and
-/// power; both take turns, and the figure is the ratio of medians. Link with benchmark_main.
+/// What threads are worth: one simulation stepped by two threads, against two simulations stepped
+/// by one thread each at the same time. That is the fair bar on a machine whose cores share memory
+/// and power; both take turns, and the figure is the ratio of medians. Link with benchmark_main.
 
 #include "beds.hpp"
 
@@ -40,8 +40,8 @@ double median(std::vector<double> values) {
 template <int Dim>
 void two_threads(benchmark::State& state) {
   const int copies = static_cast<int>(state.range(0));
-  const Bed<Dim> tile = pour<Dim>(
-      {kTile, kRadius, Dim == 2 ? 0.7 * kRadius : kRadius, Dim == 2 ? 0.6 : 0.4}, [] {});
+  const Bed<Dim> tile =
+      pour<Dim>({kTile, kRadius, Dim == 2 ? 0.7 * kRadius : kRadius, Dim == 2 ? 0.6 : 0.4}, [] {});
   const int rows = Dim == 2 ? 1 : 8;
   const Bed<Dim> bed = tiled<Dim>(tile, {copies / rows, rows});
   const int n = bed.count();

@@ -66,8 +66,7 @@ struct Heap {
     }
     walls.push_back(
         Wall<Dim>::half_space("floor", Vec<Dim>::Constant(-0.9), Vec<Dim>::Unit(Dim - 1)));
-    walls.push_back(
-        Wall<Dim>::segment("bar", -10 * Vec<Dim>::Unit(0), 10 * Vec<Dim>::Unit(0)));
+    walls.push_back(Wall<Dim>::segment("bar", -10 * Vec<Dim>::Unit(0), 10 * Vec<Dim>::Unit(0)));
     walls.back().kind = kind_count - 1;
     walls.back().velocity = 0.1 * Vec<Dim>::Unit(0);
 
@@ -120,10 +119,10 @@ bool same_loads(const H& a, const H& b) {
   return true;
 }
 
-#define KERNEL_CASES                                                                        \
-  Case<2, LinearSpring>, Case<3, LinearSpring>, Case<2, Hertz>, Case<3, Hertz>,             \
-      Case<2, ViscousSpring>, Case<3, ViscousSpring>, Case<2, ViscousHertz>,                \
-      Case<3, ViscousHertz>, Case<2, FrictionalSpring>, Case<3, FrictionalSpring>,          \
+#define KERNEL_CASES                                                               \
+  Case<2, LinearSpring>, Case<3, LinearSpring>, Case<2, Hertz>, Case<3, Hertz>,    \
+      Case<2, ViscousSpring>, Case<3, ViscousSpring>, Case<2, ViscousHertz>,       \
+      Case<3, ViscousHertz>, Case<2, FrictionalSpring>, Case<3, FrictionalSpring>, \
       Case<2, FrictionalHertz>, Case<3, FrictionalHertz>
 
 }  // namespace
@@ -147,8 +146,7 @@ TEST_SUITE("contact_kernel") {
           std::vector<Tally> tallies;
           for (int step = 0; step < 3; ++step) {
             tallies.push_back(kernel.pairs(scene, heap.pairs, 0, heap.pairs.size()));
-            tallies.push_back(
-                kernel.pairs(scene, heap.pairs, 1, heap.pairs.size(), kept.data()));
+            tallies.push_back(kernel.pairs(scene, heap.pairs, 1, heap.pairs.size(), kept.data()));
             tallies.push_back(kernel.walls(scene, heap.wall_pairs, 0, heap.wall_pairs.size(),
                                            wall_forces.data()));
           }

@@ -75,7 +75,7 @@ struct Scheme {
                                                                           : 2;
 };
 
-#define SCHEMES                                                                         \
+#define SCHEMES                                                                      \
   Scheme<2, SymplecticEuler>, Scheme<3, SymplecticEuler>, Scheme<2, VelocityVerlet>, \
       Scheme<3, VelocityVerlet>, Scheme<2, ForestRuth>, Scheme<3, ForestRuth>
 

@@ -4,8 +4,7 @@
 
 int main() {
   lagrain::Columns<2> sites(2, 5);  // the corners of a square and its centre [m]
-  sites << 0, 1, 1, 0, 0.5,
-           0, 0, 1, 1, 0.5;
+  sites << 0, 1, 1, 0, 0.5, 0, 0, 1, 1, 0.5;
   const Eigen::VectorXd weights = Eigen::VectorXd::Constant(5, 0.35 * 0.35);  // r^2 [m^2]
 
   lagrain::Triangulation<2> triangulation;

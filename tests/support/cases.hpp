@@ -13,6 +13,8 @@ inline bool nightly() {
 }
 
 /// `usual` seeds, steps or sizes by default, `many` in the nightly set.
-inline int cases(int usual, int many) { return nightly() ? many : usual; }
+inline int cases(int usual, int many) {
+  return nightly() ? many : usual;
+}
 
 }  // namespace lagrain::test

@@ -324,8 +324,7 @@ MotionScene<Dim> row(int count, const Vec<Dim>& direction, double aside) {
 /// Runs one law through the scene; contacts may be as deep as they like.
 template <int Dim, class Law, class N>
 Sim<Dim, Law, N> start(const MotionScene<Dim>& scene, const Law& law, N neighbourhood = {},
-                       int threads = 1,
-                       InstructionSet instructions = instruction_sets().back()) {
+                       int threads = 1, InstructionSet instructions = instruction_sets().back()) {
   auto grains = make_grains<Dim, Law::needs>(scene.grains);
   const LawTable<Law> laws(law);
   Setting<Dim> setting;
