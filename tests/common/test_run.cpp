@@ -107,11 +107,11 @@ TEST_SUITE("run") {
     CHECK(without_friction->size().memory_per_pair == 0);
     CHECK(without_friction->size().per_near_pair == sizeof(Pair));
     CHECK(with_friction->spins() != nullptr);
-    CHECK(with_friction->size().spin_per_grain == 8 * (2 * kSpinDim<S::Dim> + 1));
+    CHECK(with_friction->size().spin_per_grain == (S::Dim == 2 ? 24 : 88));
     CHECK(with_friction->size().memory_per_pair == 8 * S::Dim);
     CHECK(explain(*without_friction).find("for spin") == std::string::npos);
     CHECK(
-        explain(*with_friction).find(S::Dim == 2 ? "24 of them for spin" : "56 of them for spin") !=
+        explain(*with_friction).find(S::Dim == 2 ? "24 of them for spin" : "88 of them for spin") !=
         std::string::npos);
   }
 

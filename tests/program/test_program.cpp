@@ -192,27 +192,8 @@ TEST_SUITE("program") {
     CHECK(content(place / "a/series.csv") == content(place / "b/series.csv"));
     CHECK(content(place / "a/frames/0001.csv") == content(place / "b/frames/0001.csv"));
     CHECK(content(place / "a/frames/0001.csv") == content(place / "c/frames/0001.csv"));
-  }
-
-  TEST_CASE("threads share the work, not the result; their number is a number") {
-    const Place place;
-    place.write("heap.toml", kOnTriangulation);
-
-    REQUIRE(place.run({"run", "heap.toml", "--out", "one", "--threads", "1"}) == 0);
-    REQUIRE(place.run({"run", "heap.toml", "--out", "three", "--threads", "3"}) == 0);
-
-    CHECK(content(place / "one/series.csv") == content(place / "three/series.csv"));
-    CHECK(content(place / "one/frames/0001.csv") == content(place / "three/frames/0001.csv"));
-    for (const char* wrong : {"0", "-1", "many"}) {
-      CAPTURE(wrong);
-      CHECK(place.run({"run", "heap.toml", "--out", "none", "--threads", wrong}) == 2);
-      const std::string err = place.err();
-      CHECK(std::count(err.begin(), err.end(), '\n') == 1);
-      CHECK(holds(err, "--threads"));
-      CHECK(!fs::exists(place / "none"));
-    }
     CHECK(holds(place.out(), "dimension       3\n"));
-    CHECK(holds(place.out(), "bytes per grain 152, 56 of them for spin\n"));
+    CHECK(holds(place.out(), "bytes per grain 240, 88 of them for spin\n"));
   }
 
   TEST_CASE("a missing scene, an unwritable folder and a wrong flag are exit code 2") {
@@ -294,11 +275,11 @@ TEST_SUITE("program") {
       CAPTURE(part);
       CHECK(holds(rough, part));
     }
-    CHECK(holds(rough, "bytes per grain 96, 24 of them for spin\n"));
+    CHECK(holds(rough, "bytes per grain 144, 24 of them for spin\n"));
     CHECK(holds(rough, "bytes per pair  24, 16 of them for memory\n"));
-    CHECK(holds(smooth, "bytes per grain 72\n"));
+    CHECK(holds(smooth, "bytes per grain 120\n"));
     CHECK(holds(smooth, "bytes per pair  8\n"));
-    CHECK(holds(smooth, "> none            72         0           8           0\n"));
+    CHECK(holds(smooth, "> none           120         0           8           0\n"));
     CHECK(!fs::exists(place / "runs"));
   }
 
