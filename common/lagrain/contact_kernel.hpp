@@ -77,7 +77,6 @@ class ContactKernel {
   static constexpr Needs needs = Law::needs;
   using Memory = typename Law::template Memory<Dim>;
   using Scene = ContactScene<Dim, Law>;
-  using Load = LoadRecord<Dim, needs>;
 
   /// @param one_law  all contacts between grains follow the first law of the table
   ContactKernel(InstructionSet set, bool one_law);
