@@ -39,8 +39,8 @@ template <int Dim>
 void Run<Dim>::check_contacts() {
   const bool fresh = refreshes() != refreshes_seen_;
   refreshes_seen_ = refreshes();
-  const bool due =
-      count() <= ContactAudit<Dim>::kBruteForceLimit || fresh || steps() % scene_.audit_every == 0;
+  constexpr int kEveryStepLimit = 1000;
+  const bool due = count() <= kEveryStepLimit || fresh || steps() % scene_.audit_every == 0;
   // A fourth-order step ends with a drift after its last forces: a list that expired there is
   // renewed before anybody reads it.
   if (due && near_is_valid()) audit_.check(positions(), radii(), near_pairs());

@@ -142,7 +142,7 @@ class RebuiltTriangulation {
       const int i = std::min(a, b), j = std::max(a, b);
       if (within_reach<Dim>(x, radius, margin, i, j)) pairs.push_back({i, j});
     });
-    std::sort(pairs.begin(), pairs.end());
+    sort_pairs(pairs, t_.size());
   }
 
  private:

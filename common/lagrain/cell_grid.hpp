@@ -28,17 +28,34 @@ class CellGrid {
     const int n = static_cast<int>(radius.size());
     if (n < 2) return;
     sort_into_cells(x, radius, margin);
-    for (int i = 0; i < n; ++i) {
-      const std::size_t first = pairs.size();
-      for_each_in_reach(i, [&](int j) {
-        if (j > i && within_reach<Dim>(x, radius, margin, i, j)) pairs.push_back({i, j});
-      });
-      std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(first), pairs.end());
+    // Every pair once: from each cell to what follows in its row, and to the rows that follow.
+    Index cell{};
+    for (std::size_t c = 0; c + 1 < start_.size(); ++c) {
+      if (start_[c] < start_[c + 1]) {
+        const int row_end = start_[c + (cell[kLast] + 1 < shape_[kLast] ? 2 : 1)];
+        for (int k = start_[c]; k < start_[c + 1]; ++k) list_pairs(k, k + 1, row_end, pairs);
+        for_each_row_ahead(cell, [&](int first, int end) {
+          for (int k = start_[c]; k < start_[c + 1]; ++k) list_pairs(k, first, end, pairs);
+        });
+      }
+      for (std::size_t d = Dim; d-- > 0;) {  // on to the next cell
+        if (++cell[d] < shape_[d]) break;
+        cell[d] = 0;
+      }
     }
+    sort_pairs(pairs, n);
   }
 
  private:
   using Index = std::array<int, Dim>;
+  static constexpr std::size_t kLast = Dim - 1;
+
+  /// A grain in the order of the cells.
+  struct Member {
+    Vec<Dim> x;
+    double reach;
+    int i;
+  };
 
   void sort_into_cells(const Columns<Dim>& x, const Eigen::VectorXd& radius,
                        const Eigen::VectorXd& margin) {
@@ -68,16 +85,16 @@ class CellGrid {
         const auto k = static_cast<std::size_t>(d);
         index[k] = std::min(static_cast<int>((x(d, i) - low[d]) / width), shape_[k] - 1);
       }
-      cell_[static_cast<std::size_t>(i)] = index;
-      ++start_[flat(index) + 1];
+      const std::size_t c = flat(index);
+      cell_[static_cast<std::size_t>(i)] = c;
+      ++start_[c + 1];
     }
     for (std::size_t c = 0; c < count; ++c) start_[c + 1] += start_[c];
-    member_.resize(static_cast<std::size_t>(n));
-    std::vector<int>& next = scratch_;
-    next.assign(start_.begin(), start_.end() - 1);
+    members_.resize(static_cast<std::size_t>(n));
+    next_.assign(start_.begin(), start_.end() - 1);
     for (int i = 0; i < n; ++i) {
-      const std::size_t c = flat(cell_[static_cast<std::size_t>(i)]);
-      member_[static_cast<std::size_t>(next[c]++)] = i;
+      const int k = next_[cell_[static_cast<std::size_t>(i)]]++;
+      members_[static_cast<std::size_t>(k)] = {x.col(i), radius[i] + margin[i], i};
     }
   }
 
@@ -89,35 +106,49 @@ class CellGrid {
     return c;
   }
 
+  /// The rows along the last axis that follow a cell's own, as far as they are adjacent to the
+  /// cell: f(first, end) of their members, which lie side by side.
   template <class F>
-  void for_each_in_reach(int i, F&& visit) const {
-    const Index& home = cell_[static_cast<std::size_t>(i)];
-    Index offset;
-    offset.fill(-1);
-    for (bool more = true; more;) {
-      Index index;
-      bool inside = true;
-      for (std::size_t d = 0; d < Dim; ++d) {
-        index[d] = home[d] + offset[d];
-        inside = inside && index[d] >= 0 && index[d] < shape_[d];
+  void for_each_row_ahead(const Index& cell, F&& f) const {
+    const auto visit = [&](Index row) {
+      for (std::size_t d = 0; d < kLast; ++d) {
+        if (row[d] < 0 || row[d] >= shape_[d]) return;
       }
-      if (inside) {
-        const std::size_t c = flat(index);
-        for (int k = start_[c]; k < start_[c + 1]; ++k) visit(member_[static_cast<std::size_t>(k)]);
-      }
-      more = false;  // count on in base 3
-      for (std::size_t d = 0; d < Dim && !more; ++d) {
-        more = offset[d] < 1;
-        offset[d] = more ? offset[d] + 1 : -1;
-      }
+      row[kLast] = std::max(cell[kLast] - 1, 0);
+      const int first = start_[flat(row)];
+      row[kLast] = std::min(cell[kLast] + 1, shape_[kLast] - 1);
+      f(first, start_[flat(row) + 1]);
+    };
+    Index row = cell;
+    if constexpr (Dim == 3) {
+      ++row[1];
+      visit(row);
+      ++row[0];
+      visit(row);
+      --row[1];
+      visit(row);
+      --row[1];
+      visit(row);
+    } else {
+      ++row[0];
+      visit(row);
+    }
+  }
+
+  void list_pairs(int k, int first, int end, std::vector<Pair>& pairs) const {
+    const Member& a = members_[static_cast<std::size_t>(k)];
+    for (int other = first; other < end; ++other) {
+      const Member& b = members_[static_cast<std::size_t>(other)];
+      if (!within_reach<Dim>(a.x, a.reach, b.x, b.reach)) continue;
+      pairs.push_back({std::min(a.i, b.i), std::max(a.i, b.i)});
     }
   }
 
   Index shape_{};
-  std::vector<Index> cell_;
-  std::vector<int> start_;
-  std::vector<int> member_;
-  std::vector<int> scratch_;
+  std::vector<std::size_t> cell_;  ///< of each grain
+  std::vector<int> start_;         ///< of each cell's members
+  std::vector<Member> members_;
+  std::vector<int> next_;
 };
 
 static_assert(Neighbourhood<CellGrid<2>, 2> && Neighbourhood<CellGrid<3>, 3>);

@@ -21,13 +21,32 @@ struct Pair {
   auto operator<=>(const Pair&) const = default;
 };
 
+/// Sorts pairs of numbers from 0 to n - 1, by counting: once by j, then by i.
+inline void sort_pairs(std::vector<Pair>& pairs, int n) {
+  std::vector<Pair> by_j(pairs.size());
+  std::vector<std::size_t> next;
+  const auto scatter = [&](const std::vector<Pair>& from, std::vector<Pair>& to, int Pair::*key) {
+    next.assign(static_cast<std::size_t>(n) + 1, 0);
+    for (const Pair& pair : from) ++next[static_cast<std::size_t>(pair.*key) + 1];
+    for (std::size_t k = 1; k < next.size(); ++k) next[k] += next[k - 1];
+    for (const Pair& pair : from) to[next[static_cast<std::size_t>(pair.*key)]++] = pair;
+  };
+  scatter(pairs, by_j, &Pair::j);
+  scatter(by_j, pairs, &Pair::i);
+}
+
 /// Whether two grains are within reach: their gap is at most the sum of their margins [m]. Every
 /// neighbourhood asks this one function, so that all of them propose the very same pairs.
+/// @param reach_a  radius and margin [m]
+template <int Dim>
+bool within_reach(const Vec<Dim>& a, double reach_a, const Vec<Dim>& b, double reach_b) {
+  const double reach = reach_a + reach_b;
+  return (a - b).squaredNorm() <= reach * reach;
+}
 template <int Dim>
 bool within_reach(const Columns<Dim>& x, const Eigen::VectorXd& radius,
                   const Eigen::VectorXd& margin, int i, int j) {
-  const double reach = (radius[i] + margin[i]) + (radius[j] + margin[j]);
-  return (x.col(i) - x.col(j)).squaredNorm() <= reach * reach;
+  return within_reach<Dim>(x.col(i), radius[i] + margin[i], x.col(j), radius[j] + margin[j]);
 }
 
 /// The movement that most grains share: the median of each component over a sample of the columns
