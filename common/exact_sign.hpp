@@ -4,8 +4,17 @@
 
 #include <CGAL/Gmpzf.h>
 #include <CGAL/Interval_nt.h>
+#include <CGAL/Mpzf.h>
 
 namespace lagrain::detail {
+
+/// Multiprecision floats that know no rounding. Mpzf keeps its digits in place and takes a quarter
+/// of the time, where CGAL offers it.
+#ifdef CGAL_HAS_MPZF
+using ExactNumber = CGAL::Mpzf;
+#else
+using ExactNumber = CGAL::Gmpzf;
+#endif
 
 /// Sign of `Formula::of<T>(arguments...)`, where T is any number type made from a double.
 ///
@@ -18,7 +27,7 @@ int exact_sign(const Arguments&... arguments) {
     const auto sign = CGAL::sign(Formula::template of<CGAL::Interval_nt_advanced>(arguments...));
     if (CGAL::is_certain(sign)) return static_cast<int>(CGAL::get_certain(sign));
   }
-  return static_cast<int>(CGAL::sign(Formula::template of<CGAL::Gmpzf>(arguments...)));
+  return static_cast<int>(CGAL::sign(Formula::template of<ExactNumber>(arguments...)));
 }
 
 inline int compare(double a, double b) {

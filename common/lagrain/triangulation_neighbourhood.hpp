@@ -5,6 +5,7 @@
 
 #include <lagrain/check.hpp>
 #include <lagrain/neighbourhood.hpp>
+#include <lagrain/random.hpp>
 #include <lagrain/triangulation.hpp>
 
 #include <algorithm>
@@ -114,6 +115,9 @@ class TriangulationNeighbourhood {
   void build(const Columns<Dim>& x, const Eigen::VectorXd& radius) {
     // Skins follow the neighbours in T, and T the skins: start without.
     reference_ = x;
+    Random random(1);
+    aside_ = x.unaryExpr([&](double) { return kHair * random.uniform(-1, 1); });
+    for (int i = 0; i < x.cols(); ++i) reference_.col(i) += radius[i] * aside_.col(i);
     drift_.setZero();
     weight_ = radius.array().square();
     t_.build(reference_, weight_);
@@ -200,8 +204,8 @@ class TriangulationNeighbourhood {
       skin = kLeastSkin * smallest;
       shift = 0;
     }
-    // A hair less, so that rounding does not fail the certificate.
-    reference_.col(i) = here + (1 - 1e-6) * shift * ahead;
+    // A hair less, so that neither rounding nor the hair's breadth aside fails the certificate.
+    reference_.col(i) = here + (1 - 1e-6) * shift * ahead + skin * aside_.col(i);
     set_skin(radius, i, (1 - 1e-6) * skin);
     state(i) = State::placed;
   }
@@ -312,10 +316,14 @@ class TriangulationNeighbourhood {
   static constexpr double kSmallSkin = 0.24;  // of the same: below (3 sqrt 2 - 4)
   static constexpr double kMostAhead = 0.7;   // of a skin
   static constexpr double kTooLittle = 0.25;  // of a fair share
+  static constexpr double kHair = 1e-7;       // of a skin
 
   Laziness laziness_;
   T t_;
   Columns<Dim> reference_;
+  /// References stand aside by this times the skin, each in a direction of its own: so they are in
+  /// general position even where grains lie on a lattice, and predicates need no exact arithmetic.
+  Columns<Dim> aside_;
   Eigen::VectorXd weight_;  ///< (r + skin)^2
   Eigen::VectorXd skin_;
   Vec<Dim> drift_ = Vec<Dim>::Zero();  ///< of the grains against the references' frame [m]

@@ -12,6 +12,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -96,7 +97,7 @@ TEST_SUITE("degenerate_motion") {
     }
   }
 
-  TEST_CASE_TEMPLATE("grains in one layer on a floor are a flat set until something lifts one", S,
+  TEST_CASE_TEMPLATE("grains in one layer on a floor are no flat set to the triangulation", S,
                      Space<2>, Space<3>) {
     constexpr int Dim = S::Dim;
     for (const bool dropped : {false, true}) {
@@ -107,9 +108,11 @@ TEST_SUITE("degenerate_motion") {
         const Watch rolling = watch<Dim, FrictionalSpring>(scene, cases(3000, 50000));
         const Watch sliding = watch<Dim, LinearSpring>(scene, cases(3000, 50000));
 
-        CHECK(rolling.dimension == (dropped ? Dim : Dim - 1));
-        CHECK(rolling.last_dimension == Dim);
-        CHECK(sliding.last_dimension == (dropped ? Dim : Dim - 1));
+        // References stand off the layer by a hair.
+        CHECK(rolling.dimension == Dim);
+        CHECK(sliding.dimension == Dim);
+        CHECK(sliding.last_dimension == Dim);
+        CHECK(rolling.cost.ladder.rebuilds * 100 <= rolling.cost.updates);
       }
     }
   }
@@ -128,7 +131,7 @@ TEST_SUITE("degenerate_motion") {
     }
   }
 
-  TEST_CASE_TEMPLATE("grains in a row are a flat set, until one steps aside", S, Space<2>,
+  TEST_CASE_TEMPLATE("grains in a row are no flat set to the triangulation", S, Space<2>,
                      Space<3>) {
     constexpr int Dim = S::Dim;
     for (const int count : {2, 3, 4, 30}) {
@@ -141,8 +144,8 @@ TEST_SUITE("degenerate_motion") {
         const Watch w = watch<Dim, FrictionalSpring>(straight, cases(2000, 20000));
         watch<Dim, FrictionalSpring>(slanted, cases(2000, 20000));
 
-        CHECK(w.dimension == 1);
-        CHECK(w.last_dimension == (aside == 0 || count == 2 ? 1 : 2));
+        CHECK(w.dimension == std::min(count - 1, Dim));
+        CHECK(w.last_dimension == std::min(count - 1, Dim));
       }
     }
   }
