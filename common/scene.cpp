@@ -410,7 +410,7 @@ LawNumbers read_law(Section& s, NormalModel normal, FrictionModel friction,
     return law;
   }
   number("friction", kNumber, Range::not_negative, law.friction);
-  if (!base && friction == FrictionModel::viscous) law.tangential_damping = 0.5;
+  if (!base && friction == FrictionModel::viscous) law.tangential_damping = 0.15;
   law.tangential_damping =
       s.number("tangential_damping", kNumber, Range::not_negative, law.tangential_damping);
   if (friction == FrictionModel::elastic) {

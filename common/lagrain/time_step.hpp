@@ -7,6 +7,7 @@
 #include <lagrain/walls.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <variant>
@@ -24,8 +25,20 @@ struct TimeScales {
 /// neighbours oscillates up to sqrt(3) times faster than a pair, and explicit schemes are stable up
 /// to 0.37 of a pair's contact time then; a tenth keeps the error small as well.
 inline constexpr double kLargestContactFraction = 0.1;
-/// A dashpot of ratio zeta acts in natural_time / (2 zeta); six neighbours damp three times faster.
-inline constexpr double kLargestDampingFraction = 0.3;
+
+/// A packing has modes that are stiffer and more damped than a free pair under the same law: twice
+/// in a chain, three times in a hexagonal layer, four times in a face-centred cubic crystal.
+inline constexpr double kStiffestMode = 4;
+
+/// The largest omega0 dt at which dashpots are stable, for a damping ratio zeta. Velocity Verlet
+/// applies them to the predicted velocity v + dt a_old, and is stable for a mode of mass m,
+/// stiffness k = z m omega0^2 and damping c = 2 z zeta m omega0 if c dt / m + k dt^2 / (4 m) < 1,
+/// with z up to kStiffestMode. Beyond, forces alternate from step to step and never come to rest.
+inline double largest_damped_phase(double damping_ratio) {
+  constexpr double kFree = 4 / kStiffestMode;
+  const double damped = 4 * damping_ratio;
+  return kFree / (std::sqrt(damped * damped + kFree) + damped);
+}
 
 /// Shortest collision and safe step over all pairs of kinds that occur, with each kind's lightest
 /// grain (the time grows with the mass; in Hertz's law it falls slowly with the radius, so grains
@@ -45,11 +58,9 @@ TimeScales time_scales(const Grains<Dim, needs>& g, const LawTable<Law>& laws,
     const double contact = law.contact_time(m, r);
     scales.contact = std::min(scales.contact, contact);
     scales.safe_step = std::min(scales.safe_step, kLargestContactFraction * contact);
-    if (law.largest_damping_ratio() > 0) {
-      scales.safe_step =
-          std::min(scales.safe_step,
-                   kLargestDampingFraction * law.natural_time(m, r) / law.largest_damping_ratio());
-    }
+    scales.safe_step =
+        std::min(scales.safe_step,
+                 largest_damped_phase(law.largest_damping_ratio()) * law.natural_time(m, r));
   };
   for (const auto& [a, i] : lightest) {
     for (const auto& [b, j] : lightest) {

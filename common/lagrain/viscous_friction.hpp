@@ -26,8 +26,8 @@ struct ViscousFriction {
   using Memory = NoMemory;
 
   Normal normal;
-  double friction = 0;                    ///< mu [-]
-  double tangential_damping_ratio = 0.5;  ///< zeta_t [-]
+  double friction = 0;                     ///< mu [-]
+  double tangential_damping_ratio = 0.15;  ///< zeta_t [-]
 
   template <int Dim, class Real>
   Response<Dim, Real> respond(const Touch<Dim, Real>& touch, NoMemory&, double time_step) const {
