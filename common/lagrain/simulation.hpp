@@ -137,7 +137,7 @@ class Simulation {
         pairs.push_back({std::min(i, j), std::max(i, j)});
       }
     }
-    std::sort(pairs.begin(), pairs.end());
+    sort_pairs(pairs, count());
     return pairs;
   }
   std::size_t near_count() const { return near_.within.size() + near_.across.size(); }
@@ -319,6 +319,18 @@ class Simulation {
     return x;
   }
 
+  /// f(block) for every block, shared by the threads. One thread alone does without OpenMP, whose
+  /// team of one takes a microsecond to call together.
+  template <class F>
+  void for_each_block(F&& f) {
+    if (setting_.threads == 1) {
+      for (int block = 0; block < near_.blocks(); ++block) f(block);
+      return;
+    }
+#pragma omp parallel for schedule(dynamic) num_threads(setting_.threads)
+    for (int block = 0; block < near_.blocks(); ++block) f(block);
+  }
+
   // ---- Motion ----------------------------------------------------------------------------------
 
   /// A grain on its way through a step.
@@ -373,12 +385,11 @@ class Simulation {
     const auto start = measuring_ ? Clock::now() : Clock::time_point{};
     const Vec<Dim> shift = near_.shift(t);
     bool holds = near_.fresh() && near_.walls_hold(walls_, shift);
+    block_holds_.assign(index(near_.blocks()), holds);
     const auto pass = [&]<bool kFinish>() {
-#pragma omp parallel for schedule(static) reduction(&& : holds) \
-    num_threads(setting_.threads) if (setting_.threads > 1)
-      for (int block = 0; block < near_.blocks(); ++block) {
+      for_each_block([&](int block) {
         const int end = near_.end_slot(block);
-        bool inside = true;
+        bool inside = holds;
         for (int slot = near_.first_slot(block); slot < end; ++slot) {
           Moving grain(*this, slot);
           if constexpr (kFinish) grain.finish(setting_.time_step);
@@ -386,8 +397,8 @@ class Simulation {
           grain.store(*this, slot);
           if (holds) inside &= near_.holds(slot, grain.x, shift);
         }
-        holds = holds && inside;
-      }
+        block_holds_[index(block)] = inside;
+      });
     };
     if (unfinished_) {
       pass.template operator()<true>();
@@ -395,6 +406,7 @@ class Simulation {
       pass.template operator()<false>();
     }
     unfinished_ = false;
+    for (const char inside : block_holds_) holds = holds && inside;
     near_holds_ = holds;
     if (measuring_) times_.integration += seconds(Clock::now() - start);
   }
@@ -410,21 +422,16 @@ class Simulation {
     parts_.assign(index(blocks), {});
     kept_.resize(near_.across.size());
     wall_parts_.assign(index(blocks) * walls_.size(), Vec<Dim>::Zero());
-#pragma omp parallel num_threads(setting_.threads) if (setting_.threads > 1)
-    {
-      if (blocks > 1) {
-#pragma omp for schedule(dynamic)
-        for (int block = 0; block < blocks; ++block) {
-          Part& part = parts_[index(block)];
-          const auto start = measuring_ ? Clock::now() : Clock::time_point{};
-          part.across = kernel_.pairs(scene, near_.across, near_.first_across(block),
-                                      near_.first_across(block + 1), kept_.data());
-          if (measuring_) part.pair_seconds += seconds(Clock::now() - start);
-        }
-      }
-#pragma omp for schedule(dynamic)
-      for (int block = 0; block < blocks; ++block) block_forces(scene, block);
+    if (blocks > 1) {
+      for_each_block([&](int block) {
+        Part& part = parts_[index(block)];
+        const auto start = measuring_ ? Clock::now() : Clock::time_point{};
+        part.across = kernel_.pairs(scene, near_.across, near_.first_across(block),
+                                    near_.first_across(block + 1), kept_.data());
+        if (measuring_) part.pair_seconds += seconds(Clock::now() - start);
+      });
     }
+    for_each_block([&](int block) { block_forces(scene, block); });
 
     Tally total;
     for (const Part& part : parts_) total += part.across;
@@ -578,6 +585,7 @@ class Simulation {
   PhaseTimes times_;
   bool measuring_ = false;
 
+  std::vector<char> block_holds_;  ///< whether no grain of the block has left its margin
   std::vector<Part> parts_;
   std::vector<PairLoad<Dim, needs>> kept_;
   std::vector<Vec<Dim>> wall_parts_;  // forces on the walls, by block
