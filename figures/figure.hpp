@@ -40,6 +40,13 @@ struct Fact {
   std::string value;
 };
 
+/// Rows of text under a head; numbers with as many digits as make sense.
+struct Table {
+  std::string title;
+  std::vector<std::string> head;
+  std::vector<std::vector<std::string>> rows;
+};
+
 /// What a figure leaves behind. Paths lie in, or are relative to, FigureOptions::out.
 struct FigureResult {
   std::string caption;
@@ -47,19 +54,24 @@ struct FigureResult {
   std::vector<Fact> facts;
   std::vector<std::filesystem::path> pictures;   ///< PNG and video are shown, PDF and SVG linked
   std::vector<std::filesystem::path> downloads;  ///< linked: CSV, scenes
+  std::vector<Table> tables = {};
 };
+
+/// Where a figure stands: among those of the paper, or in the report of speed against error.
+enum class Page { figures, report };
 
 struct Figure {
   int number;
   std::string title;
   FigureResult (*draw)(const FigureOptions&);
+  Page page = Page::figures;
 };
 
 /// Every figure that exists, in order.
 const std::vector<Figure>& all_figures();
 
 /// Draws figures in the order of `all`, tells `report` one line each, and renews the gallery
-/// index.html after each one. Figures drawn by an earlier call stay in it.
+/// index.html and report.html after each one. Figures drawn by an earlier call stay in them.
 /// @param numbers  which; none means all
 /// @throws SceneError for an unknown number, before anything is drawn, or an unwritable folder
 /// @throws Interrupted, SimulationError as a figure throws them; the gallery holds what was drawn
@@ -67,10 +79,11 @@ void draw_figures(const std::vector<Figure>& all, const std::vector<int>& number
                   const FigureOptions& options,
                   const std::function<void(const std::string& line)>& report);
 
-/// Where the gallery's entry for the speed report is kept.
+/// Where the report's entry for the speed page is kept.
 std::filesystem::path speed_article_file(const std::filesystem::path& out);
 
-/// Writes index.html anew, from what figures and the speed report have left in the folder.
+/// Writes index.html and report.html anew, from what figures and the speed page have left in the
+/// folder.
 /// @throws SceneError if it cannot be written
 void renew_gallery(const std::vector<Figure>& all, const std::filesystem::path& out);
 

@@ -16,6 +16,15 @@ FigureResult draw_figure6(const FigureOptions& options);
 FigureResult draw_figure7(const FigureOptions& options);
 FigureResult draw_figure8(const FigureOptions& options);
 FigureResult draw_figure9(const FigureOptions& options);
+FigureResult draw_figure10(const FigureOptions& options);
+FigureResult draw_figure11(const FigureOptions& options);
+FigureResult draw_figure12(const FigureOptions& options);
+FigureResult draw_figure13(const FigureOptions& options);
+FigureResult draw_figure14(const FigureOptions& options);
+FigureResult draw_figure15(const FigureOptions& options);
+FigureResult draw_figure16(const FigureOptions& options);
+FigureResult draw_figure17(const FigureOptions& options);
+FigureResult draw_figure18(const FigureOptions& options);
 }  // namespace figures
 #endif
 
@@ -31,6 +40,17 @@ const std::vector<Figure>& all_figures() {
       {7, "Packings of spheres of two radii", figures::draw_figure7},
       {8, "Grains leave space for a large one", figures::draw_figure8},
       {9, "Random packings and the closest one", figures::draw_figure9},
+      {10, "Integrators and steps", figures::draw_figure10, Page::report},
+      {11, "Contact laws and the rigid limit", figures::draw_figure11, Page::report},
+      {12, "Neighbourhoods: what is missed, what it costs", figures::draw_figure12, Page::report},
+      {13, "Predicates: what plain doubles get wrong", figures::draw_figure13, Page::report},
+      {14, "Triangulation update: flips against rebuild", figures::draw_figure14, Page::report},
+      {15, "What each piece of physics costs", figures::draw_figure15, Page::report},
+#ifdef LAGRAIN_WITH_BOX2D
+      {16, "Box2D and lagrain against closed forms", figures::draw_figure16, Page::report},
+      {17, "Box2D and lagrain in bulk", figures::draw_figure17, Page::report},
+#endif
+      {18, "Hard cases", figures::draw_figure18, Page::report},
 #endif
   };
   return all;

@@ -19,6 +19,19 @@ fs::path inside(const fs::path& file, const fs::path& out) {
   return relative.empty() || *relative.begin() == ".." ? file : relative;
 }
 
+std::string table_html(const Table& table) {
+  const auto row = [](const std::vector<std::string>& cells, const std::string& tag) {
+    std::string html = "<tr>";
+    for (const std::string& cell : cells)
+      html += "<" + tag + ">" + escaped(cell) + "</" + tag + ">";
+    return html + "</tr>";
+  };
+  std::string html = "<table>\n<caption>" + escaped(table.title) + "</caption>\n<thead>" +
+                     row(table.head, "th") + "</thead>\n";
+  for (const auto& cells : table.rows) html += row(cells, "td") + "\n";
+  return html + "</table>\n";
+}
+
 std::string article(const Figure& figure, const FigureResult& result, const FigureOptions& options,
                     const std::string& seconds) {
   const std::string number = std::to_string(figure.number);
@@ -51,6 +64,7 @@ std::string article(const Figure& figure, const FigureResult& result, const Figu
     }
     html += "</table>\n";
   }
+  for (const Table& table : result.tables) html += table_html(table);
   html += "<table>\n";
   for (const Fact& fact : result.facts) {
     html += "<tr><th>" + escaped(fact.name) + "</th><td>" + escaped(fact.value) + "</td></tr>\n";
@@ -73,24 +87,32 @@ fs::path speed_article_file(const fs::path& out) {
 }
 
 void renew_gallery(const std::vector<Figure>& all, const fs::path& out) {
-  std::string html = page_head("lagrain: figures");
-  html +=
-      "<h1>lagrain</h1>\n<p class=\"note\">Granular simulation on dynamic regular "
-      "triangulations, after Ferrez &amp; Liebling. Version " +
-      std::string(version()) + ".</p>\n";
-  bool any = false;
-  const auto add = [&](const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    if (!in) return;
+  const auto text_of = [](const fs::path& file) {
     std::ostringstream text;
-    text << in.rdbuf();
-    html += text.str();
-    any = true;
+    if (std::ifstream in(file, std::ios::binary); in) text << in.rdbuf();
+    return text.str();
   };
-  for (const Figure& figure : all) add(article_file(figure, out));
-  add(speed_article_file(out));
-  if (!any) html += "<p>No figure has been drawn yet.</p>\n";
-  write_file(out / "index.html", html + "</body>\n</html>\n");
+  std::string figures, report;
+  for (const Figure& figure : all) {
+    (figure.page == Page::figures ? figures : report) += text_of(article_file(figure, out));
+  }
+  report += text_of(speed_article_file(out));
+  const auto note = [](const std::string& text) { return "<p class=\"note\">" + text + "</p>\n"; };
+
+  std::string html = page_head("lagrain: figures") + "<h1>lagrain</h1>\n" +
+                     note(
+                         "Granular simulation on dynamic regular triangulations, after Ferrez "
+                         "&amp; Liebling. Version " +
+                         std::string(version()) + ".");
+  if (!report.empty()) html += note("<a href=\"report.html\">Speed against error</a>");
+  if (figures.empty()) html += "<p>No figure has been drawn yet.</p>\n";
+  write_file(out / "index.html", html + figures + "</body>\n</html>\n");
+  if (report.empty()) return;
+  html = page_head("lagrain: speed against error") + "<h1>Speed against error</h1>\n" +
+         note(
+             "<a href=\"index.html\">lagrain</a>: which choice for which error. Every number was "
+             "measured by the program that drew the diagrams, on one machine.");
+  write_file(out / "report.html", html + report + "</body>\n</html>\n");
 }
 
 void draw_figures(const std::vector<Figure>& all, const std::vector<int>& numbers,

@@ -141,33 +141,46 @@ void show_progress(FigureOptions& options, ProgressLine& line) {
   };
 }
 
-int figure_command(const FigureArguments& arguments) {
+/// Draws figures, and says so line by line.
+void draw(const std::vector<int>& numbers, const FigureOptions& options, ProgressLine& line) {
+  draw_figures(all_figures(), numbers, options, [&](const std::string& text) {
+    line.clear();
+    std::cout << text << std::endl;
+  });
+}
+
+FigureOptions options_of(const FigureArguments& arguments) {
   FigureOptions options;
   options.out = arguments.out;
   options.quick = arguments.quick;
   options.stop = stopping;
   // A program run from where it was built finds the sources; an installed one its data.
   options.scenes = fs::is_directory(LAGRAIN_SCENES) ? LAGRAIN_SCENES : LAGRAIN_INSTALLED_SCENES;
+  return options;
+}
+
+int figure_command(const FigureArguments& arguments) {
+  FigureOptions options = options_of(arguments);
   ProgressLine line;
   show_progress(options, line);
-  draw_figures(all_figures(), arguments.numbers, options, [&](const std::string& text) {
-    line.clear();
-    std::cout << text << std::endl;
-  });
+  draw(arguments.numbers, options, line);
   std::cout << "gallery: " << (options.out / "index.html").string() << "\n";
   return 0;
 }
 
 int report_command(const FigureArguments& arguments) {
-  FigureOptions options;
-  options.out = arguments.out;
-  options.quick = arguments.quick;
-  options.stop = stopping;
+  FigureOptions options = options_of(arguments);
   ProgressLine line;
   show_progress(options, line);
+  std::vector<int> numbers;
+  for (const Figure& figure : all_figures()) {
+    if (figure.page == Page::report) numbers.push_back(figure.number);
+  }
+  // No number means all figures; without the renderer there are none.
+  if (!numbers.empty()) draw(numbers, options, line);
   bench::write_speed_report(options);
   line.clear();
-  std::cout << "report: " << (options.out / "speed.html").string() << "\n";
+  std::cout << "report: " << (options.out / "report.html").string() << "\n";
   return 0;
 }
 

@@ -26,6 +26,7 @@ img, video { display: block; max-width: 100%; height: auto; margin: .6rem 0; }
 table { border-collapse: collapse; margin: .8rem 0; font-size: .92rem; }
 th, td { text-align: left; vertical-align: top; padding: .15rem 1.4rem .15rem 0; }
 th { font-weight: normal; color: #666; }
+caption { text-align: left; font-style: italic; }
 thead th { border-bottom: 1px solid #ccc; }
 .links, .note { color: #666; font-size: .92rem; }
 .links a { margin-right: 1rem; }

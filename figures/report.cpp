@@ -7,9 +7,7 @@
 #include <lagrain/output.hpp>
 
 #ifdef LAGRAIN_WITH_RENDER
-#include <lagrain/paint.hpp>
-#include <lagrain/plot.hpp>
-#include <lagrain/style.hpp>
+#include "diagrams.hpp"
 #endif
 
 #include <array>
@@ -264,20 +262,14 @@ constexpr const char* kHowToRead =
 #ifdef LAGRAIN_WITH_RENDER
 
 /// One line per contender over what the group varies.
-Plot group_plot(const SpeedResults& results, const std::string& group, int dimension, Axis axis,
-                Corner legend) {
-  constexpr std::array<Marker, 5> kMarkers{Marker::disc, Marker::ring, Marker::square,
-                                           Marker::triangle, Marker::diamond};
+Plot group_plot(const SpeedResults& results, const std::string& group, int dimension, Axis axis) {
   Plot plot{.x = std::move(axis),
             .y = {.label = "time per grain and step [ns]", .log = true},
             .series = {},
-            .legend = legend};
+            .legend = Corner::top_left};
   int index = 0;
   for (const std::string& name : contender_names(results)) {
-    Series series = series_style(index);
-    series.name = name;
-    series.marker = kMarkers[static_cast<std::size_t>(index) % kMarkers.size()];
-    ++index;
+    Series series = figures::curve(index++, name);
     for (const SceneSpeed& scene : results.scenes) {
       const Contender* contender = scene.find(name);
       if (scene.group != group || scene.dimension != dimension || contender == nullptr) continue;
@@ -286,22 +278,12 @@ Plot group_plot(const SpeedResults& results, const std::string& group, int dimen
     }
     if (!series.x.empty()) plot.series.push_back(std::move(series));
   }
-  // Room for the legend above the highest point, and a range even where all points agree.
-  double low = 1e300, high = 0;
-  for (const Series& series : plot.series) {
-    for (const double y : series.y) {
-      low = std::min(low, y);
-      high = std::max(high, y);
-    }
-  }
-  plot.y.low = low / 1.5;
-  const double room = 0.05 + 0.08 * static_cast<double>(plot.series.size());  // of the height
-  plot.y.high = high * std::pow(high / (low / 1.5), room / (1 - room));
+  figures::leave_room_for_legend(plot);
   return plot;
 }
 
 /// @returns false if the groups to be plotted have not been measured yet
-bool draw_plots(const SpeedResults& results, const fs::path& out) {
+bool draw_plots(const SpeedResults& results, const FigureOptions& options) {
   struct Panel {
     std::string title, group;
     int dimension;
@@ -320,24 +302,19 @@ bool draw_plots(const SpeedResults& results, const fs::path& out) {
       return false;
     }
   }
-  constexpr double kHeight = 170, kGap = 14;
-  const double width = (style::kPage - 2 * kGap) / 3;
-  DisplayList list{.width = style::kPage, .height = kHeight + 18, .title = "lagrain, speed"};
-  double x = 0;
+  std::vector<figures::Diagram> diagrams;
   for (const Panel& panel : panels) {
-    add_plot(list, {{x, 0}, {x + width, kHeight}},
-             group_plot(results, panel.group, panel.dimension, panel.axis, Corner::top_left));
-    list.add(Label{.text = panel.title, .at = {x, kHeight + 6}, .size = style::kTitle});
-    x += width + kGap;
+    diagrams.push_back(
+        {panel.title, group_plot(results, panel.group, panel.dimension, panel.axis)});
   }
-  paint_png(list, out / "speed.png", 300);
-  paint_pdf(list, out / "speed.pdf");
+  FigureResult pictures;
+  figures::draw_diagrams(diagrams, 3, 170, options, "speed", pictures);
   return true;
 }
 
 #else
 
-bool draw_plots(const SpeedResults&, const fs::path&) {
+bool draw_plots(const SpeedResults&, const FigureOptions&) {
   return false;
 }
 
@@ -346,15 +323,15 @@ bool draw_plots(const SpeedResults&, const fs::path&) {
 class Report {
  public:
   explicit Report(const FigureOptions& options)
-      : out_(options.out), lammps_(find_lammps()), facts_(circumstances(lammps_, options.quick)) {}
+      : options_(options), lammps_(find_lammps()), facts_(circumstances(lammps_, options.quick)) {}
 
   const std::optional<fs::path>& lammps() const { return lammps_; }
 
   void write(const SpeedResults& results, bool finished) const {
-    write_file(out_ / "speed.csv", speed_csv(results));
-    write_file(out_ / "speed_rounds.csv", rounds_csv(results));
-    write_file(out_ / "speed_phases.csv", phases_csv(results));
-    const bool plots = finished && draw_plots(results, out_);
+    write_file(options_.out / "speed.csv", speed_csv(results));
+    write_file(options_.out / "speed_rounds.csv", rounds_csv(results));
+    write_file(options_.out / "speed_phases.csv", phases_csv(results));
+    const bool plots = finished && draw_plots(results, options_);
 
     std::string html = page_head("lagrain: speed");
     // Wide tables: the page is as wide as the window, its text is not.
@@ -362,7 +339,7 @@ class Report {
         "<style>body { max-width: none; } p { max-width: 52rem; }\n"
         "td, th { padding-right: .8rem; } thead th { vertical-align: bottom; }</style>\n";
     html +=
-        "<h1>How fast, how accurate</h1>\n<p class=\"note\"><a href=\"index.html\">lagrain</a>" +
+        "<h1>How fast, how accurate</h1>\n<p class=\"note\"><a href=\"report.html\">lagrain</a>" +
         std::string(finished ? "" : "; this run has not come to its end") + "</p>\n";
     html += facts_table(facts_) + "<p>" + escaped(kHowToRead) + "</p>\n" + summary_table(results);
     if (plots) {
@@ -383,9 +360,9 @@ class Report {
     std::vector<std::string> files{"speed.csv", "speed_rounds.csv", "speed_phases.csv"};
     if (plots) files.push_back("speed.pdf");
     for (const std::string& file : files) {
-      html += "<a href=\"" + page_link(file, out_) + "\">" + file + "</a>\n";
+      html += "<a href=\"" + page_link(file, options_.out) + "\">" + file + "</a>\n";
     }
-    write_file(out_ / "speed.html", html + "</p>\n</body>\n</html>\n");
+    write_file(options_.out / "speed.html", html + "</p>\n</body>\n</html>\n");
     write_index_entry(plots);
   }
 
@@ -399,11 +376,11 @@ class Report {
         "<p><a href=\"speed.html\">Times of lagrain and of others on the same beds, beside the "
         "errors of the same runs.</a></p>\n" +
         facts_table(facts_) + "</article>\n";
-    write_file(speed_article_file(out_), html);
-    renew_gallery(all_figures(), out_);
+    write_file(speed_article_file(options_.out), html);
+    renew_gallery(all_figures(), options_.out);
   }
 
-  fs::path out_;
+  FigureOptions options_;
   std::optional<fs::path> lammps_;
   std::vector<Fact> facts_;
 };

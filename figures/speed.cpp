@@ -3,12 +3,11 @@
 #include "beds.hpp"
 #include "contenders.hpp"
 #include "lammps.hpp"
+#include "measure.hpp"
 
 #include <lagrain/audit.hpp>
 #include <lagrain/cell_grid.hpp>
 #include <lagrain/observe.hpp>
-
-#include <time.h>
 
 #include <algorithm>
 #include <chrono>
@@ -26,21 +25,8 @@ namespace fs = std::filesystem;
 constexpr int kRounds = 3;
 constexpr int kAudits = 4;  // in the course of the measured steps
 
-/// Processor time of this thread [s]; a shared machine takes the wall clock's time away.
-double processor_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-double median_of(std::vector<double> values) {
-  if (values.empty()) return kUnknown;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Seconds of the wall clock that the simulation has spent so far, phase by phase; what it does not

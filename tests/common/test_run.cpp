@@ -2,6 +2,7 @@
 
 #include <lagrain/output.hpp>
 
+#include "support/files.hpp"
 #include "support/scene_text.hpp"
 #include "support/space.hpp"
 
@@ -9,7 +10,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 
 using namespace lagrain;
@@ -18,21 +18,6 @@ using namespace lagrain::test;
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string content(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-/// A folder for one test, gone afterwards.
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("lagrain_test_run_" + std::to_string(++count));
-  Folder() { fs::remove_all(path); }
-  ~Folder() { fs::remove_all(path); }
-  static inline int count = 0;
-};
 
 const std::string kFrictionless = without(with(kHeap, "\"elastic\"", "\"none\""), "friction = 0.4");
 

@@ -1,13 +1,14 @@
 #include "packing.hpp"
 
+#include <support/files.hpp>
+
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 using namespace lagrain;
+using namespace lagrain::test;
 using namespace lagrain::figures;
 
 namespace {
@@ -34,11 +35,6 @@ FigureOptions options() {
   o.scenes = LAGRAIN_SCENES;
   o.quick = true;
   return o;
-}
-
-std::string content(const std::filesystem::path& path) {
-  std::ifstream in(path);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace

@@ -3,32 +3,20 @@
 #include <lagrain/check.hpp>
 #include <lagrain/output.hpp>
 
+#include <support/files.hpp>
+
 #include <doctest/doctest.h>
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
 using namespace lagrain;
+using namespace lagrain::test;
 
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Folder {
-  fs::path path = fs::temp_directory_path() / "lagrain_test_gallery";
-  Folder() { fs::remove_all(path); }
-  ~Folder() { fs::remove_all(path); }
-};
-
-std::string content(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 FigureResult first(const FigureOptions& options) {
   write_file(options.out / "one.png", "PNG");
@@ -40,6 +28,11 @@ FigureResult first(const FigureOptions& options) {
 }
 FigureResult second(const FigureOptions&) {
   return {"Two", {}, {}, {"two.png", "two.mp4"}, {}};
+}
+FigureResult costs(const FigureOptions&) {
+  FigureResult result;
+  result.tables = {{"Time & error", {"law", "ns"}, {{"linear", "7"}, {"Hertz", "9"}}}};
+  return result;
 }
 FigureResult broken(const FigureOptions&) {
   throw SimulationError("t = 1 s: grain 3 is lost");
@@ -85,6 +78,27 @@ TEST_SUITE("gallery") {
     const std::string html = content(folder.path / "index.html");
     CHECK(holds(html, "Figure 1."));
     CHECK(holds(html, "Figure 2."));
+  }
+
+  TEST_CASE("figures of the report stand on a page of their own, with their tables") {
+    const Folder folder;
+    const std::vector<Figure> figures{{1, "First", first}, {10, "Costs", costs, Page::report}};
+
+    draw_figures(figures, {1}, {.out = folder.path, .scenes = {}}, [](const std::string&) {});
+    CHECK(!fs::exists(folder.path / "report.html"));
+    CHECK(!holds(content(folder.path / "index.html"), "report.html"));
+
+    draw_figures(figures, {10}, {.out = folder.path, .scenes = {}}, [](const std::string&) {});
+    const std::string index = content(folder.path / "index.html");
+    const std::string report = content(folder.path / "report.html");
+    CHECK(holds(index, "href=\"report.html\""));
+    CHECK(holds(index, "Figure 1."));
+    CHECK(!holds(index, "Figure 10."));
+    CHECK(holds(report, "Figure 10."));
+    CHECK(!holds(report, "Figure 1."));
+    CHECK(holds(report, "<caption>Time &amp; error</caption>"));
+    CHECK(holds(report, "<tr><th>law</th><th>ns</th></tr>"));
+    CHECK(holds(report, "<tr><td>linear</td><td>7</td></tr>"));
   }
 
   TEST_CASE("an unknown figure is an error before anything is drawn") {

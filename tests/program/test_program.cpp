@@ -3,6 +3,7 @@
 
 #include "scene_run.hpp"
 #include "support/cases.hpp"
+#include "support/files.hpp"
 #include "support/scene_text.hpp"
 
 #include <doctest/doctest.h>
@@ -16,7 +17,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -27,13 +27,6 @@ using namespace lagrain::test;
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string content(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 /// A fresh working folder for one test.
 class Place {

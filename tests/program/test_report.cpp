@@ -9,13 +9,12 @@
 #include <lagrain/check.hpp>
 #include <lagrain/output.hpp>
 
-#include <doctest/doctest.h>
+#include <support/files.hpp>
 
-#include <unistd.h>
+#include <doctest/doctest.h>
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
@@ -23,24 +22,12 @@
 #include <vector>
 
 using namespace lagrain;
+using namespace lagrain::test;
 using namespace lagrain::bench;
 
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("lagrain_test_report_" + std::to_string(::getpid()));
-  Folder() { fs::remove_all(path); }
-  ~Folder() { fs::remove_all(path); }
-};
-
-std::string content(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 /// Rows of a CSV file by the names in its first line; names and texts may be quoted.
 std::vector<std::map<std::string, std::string>> rows_of(const std::string& csv) {
@@ -286,7 +273,8 @@ TEST_SUITE("report") {
       CHECK(page.find(part) != std::string::npos);
     }
     CHECK(page.find("has not come to its end") == std::string::npos);
-    CHECK(content(folder.path / "index.html").find("href=\"speed.html\"") != std::string::npos);
+    CHECK(content(folder.path / "report.html").find("href=\"speed.html\"") != std::string::npos);
+    CHECK(content(folder.path / "index.html").find("href=\"report.html\"") != std::string::npos);
 
     std::set<std::string> contenders, groups;
     for (const auto& row : rows_of(content(folder.path / "speed.csv"))) {

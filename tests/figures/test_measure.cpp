@@ -1,0 +1,47 @@
+#include "measure.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+using namespace lagrain::bench;
+
+TEST_SUITE("measure") {
+  TEST_CASE("the observed order of a power law is its exponent, whatever its factor") {
+    const std::vector<double> x{0.1, 0.2, 0.4, 0.8};
+    for (const double order : {1.0, 2.0, 4.0, -0.5}) {
+      std::vector<double> y;
+      for (const double each : x) y.push_back(7 * std::pow(each, order));
+      CHECK(observed_order(x, y) == doctest::Approx(order).epsilon(1e-12));
+    }
+  }
+
+  TEST_CASE("points without a logarithm are left out of the observed order") {
+    const std::vector<double> x{0.1, 0.2, 0.4}, y{0.01, 0, 0.16};
+    CHECK(observed_order(x, y) == doctest::Approx(2).epsilon(1e-12));
+    CHECK(std::isnan(observed_order(std::vector{1.0}, std::vector{1.0})));
+  }
+
+  TEST_CASE("the median is the middle value, and none without values") {
+    CHECK(median_of({3, 1, 2}) == 2);
+    CHECK(median_of({5}) == 5);
+    CHECK(std::isnan(median_of({})));
+  }
+
+  TEST_CASE("numbers in a table read back, text is quoted, nothing is left empty") {
+    Csv csv("name,value[-],count[-]");
+    csv.row("a, b", 0.1, 3);
+    csv.row("c", std::numeric_limits<double>::quiet_NaN(), -1);
+    CHECK(csv.text() == "name,value[-],count[-]\n\"a, b\",0.1,3\n\"c\",,-1\n");
+  }
+
+  TEST_CASE("a call is timed by the processor's clock") {
+    int calls = 0;
+    const double seconds = seconds_per_call([&] { ++calls; }, 1e-4);
+    CHECK(calls > 3);  // three rounds of several calls
+    CHECK(seconds > 0);
+    CHECK(seconds < 1e-4);
+  }
+}
