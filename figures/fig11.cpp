@@ -5,6 +5,7 @@
 // pay with shorter steps.
 
 #include "diagrams.hpp"
+#include "rigid.hpp"
 #include "trials.hpp"
 
 #include <lagrain/output.hpp>
@@ -48,30 +49,13 @@ double set_stiffness(Scene<2>& scene, const Model& model, double overlap) {
   return 2.94328 * depth / kSpeed / model.steps;
 }
 
-/// Two rigid discs of equal size meet once; friction slides to the end of the contact or sticks
-/// (Walton, in Particulate Two-Phase Flow, 1993, ch. 25, with no tangential restitution).
-/// @returns velocities and surface speeds of both, over the speed of the first
-Eigen::Matrix<double, 6, 1> rigid_impact(double restitution, double friction, double offset) {
-  const double along = std::sqrt(4 - offset * offset) / 2, across = offset / 2;
-  const Vec<2> normal{-along, across}, tangent{across, along};  // towards the first disc
-  const Vec<2> v{1, 0};
-  const double jn = -(1 + restitution) * 0.5 * v.dot(normal);  // over the mass
-  // Both spins turn the point of contact: it is 1 / (1 / m_eff + 2 r^2 / I) = m / 6 heavy.
-  const double slip = v.dot(tangent);
-  const double jt = -std::copysign(std::min(friction * jn, std::abs(slip) / 6), slip);
-  const Vec<2> first = v + jn * normal + jt * tangent, second = -jn * normal - jt * tangent;
-  // The contact lies at -r normal from the first disc and at +r normal from the second, where the
-  // opposite impulse acts: both get the same spin.
-  const double turn = -2 * jt * (normal[0] * tangent[1] - normal[1] * tangent[0]);
-  Eigen::Matrix<double, 6, 1> all;
-  all << first, turn, second, turn;
-  return all;
-}
-
 Outcome impact(const Model& model, double overlap, const FigureOptions& options) {
   constexpr double kRestitution = 0.9, kOffset = 1.6;  // of a radius
   const double friction = model.friction == FrictionModel::none ? 0 : 0.1;
-  const auto exact = rigid_impact(kRestitution, friction, kOffset);
+  const double mass = trial_mass<2>(), reach = std::sqrt(4 - kOffset * kOffset) * kR;
+  const auto exact = rigid_impact({RigidDisc{{-reach, kOffset * kR}, {kSpeed, 0}, 0, kR, mass},
+                                   RigidDisc{{0, 0}, {0, 0}, 0, kR, mass}},
+                                  kRestitution, friction);
   return over_phases([&](double phase) {
     Scene<2> scene = empty_trial<2>();
     const double step = set_stiffness(scene, model, overlap);
@@ -79,18 +63,20 @@ Outcome impact(const Model& model, double overlap, const FigureOptions& options)
     scene.law.friction = friction;
     scene.law.tangential_damping = model.friction == FrictionModel::viscous ? 0.5 : 0;
     const double gap = (1 + phase) * kSpeed * step;
-    scene.grains = {{.position = {-std::sqrt(4 - kOffset * kOffset) * kR - gap, kOffset * kR},
-                     .radius = kR,
-                     .velocity = {kSpeed, 0}},
-                    {.position = {0, 0}, .radius = kR}};
+    scene.grains = {
+        {.position = {-reach - gap, kOffset * kR}, .radius = kR, .velocity = {kSpeed, 0}},
+        {.position = {0, 0}, .radius = kR}};
     scene.duration = gap / kSpeed + 2.5 * model.steps * step;
     const Trial<2> trial = run_trial(scene, step, options);
     const auto& v = trial.run->velocities();
     const auto* spin = trial.run->spins();
-    const auto surface = [&](int i) { return spin != nullptr ? kR * (*spin)(0, i) : 0.0; };
-    Eigen::Matrix<double, 6, 1> found;
-    found << v(0, 0), v(1, 0), surface(0), v(0, 1), v(1, 1), surface(1);
-    return Outcome{(found / kSpeed - exact).norm() / std::sqrt(6.0), trial.cost};
+    double squares = 0;
+    for (int i = 0; i < 2; ++i) {
+      const RigidDisc& rigid = exact[static_cast<std::size_t>(i)];
+      const double surface = spin != nullptr ? kR * (*spin)(0, i) : 0;
+      squares += (v.col(i) - rigid.velocity).squaredNorm() + std::pow(surface - kR * rigid.spin, 2);
+    }
+    return Outcome{std::sqrt(squares / 6) / kSpeed, trial.cost};
   });
 }
 
