@@ -140,7 +140,7 @@ FigureResult draw_figure11(const FigureOptions& options) {
        "velocities, of $v$",
        {linear, coarse(linear), hertz, coarse(hertz)},
        impact},
-      {"(b) oblique impact that slides, $\\mu$ = 0.1",
+      {"(b) oblique impact that slides, friction 0.1",
        "velocities, of $v$",
        {{"linear, viscous", NormalModel::linear, FrictionModel::viscous},
         {"linear, elastic", NormalModel::linear, FrictionModel::elastic},
