@@ -52,7 +52,7 @@ Wall<2> floor_at(double y) {
   return Wall<2>::half_space("floor", {0, y}, {0, 1});
 }
 
-/// Free flight for one second; error of the place, of the height fallen.
+/// Free flight; error of the place, of the height fallen.
 Outcome free_flight(const Choice& choice, const FigureOptions& options) {
   Scene<2> scene = empty_trial<2>();
   scene.integrator = choice.integrator;
@@ -173,23 +173,28 @@ Outcome column_error(const Choice& choice, const FigureOptions& options) {
   return outcome;
 }
 
-/// A gas of discs that lose nothing: the largest energy error on the way.
-Outcome gas(const Choice& choice, const FigureOptions& options) {
-  constexpr int kRow = 10;
+/// A gas of row times row discs that lose nothing, in a box as wide as it is high [m].
+Scene<2> gas_in_box(int row, double side) {
   Scene<2> scene = empty_trial<2>();
-  scene.integrator = choice.integrator;
   scene.neighbourhood = NeighbourhoodModel::triangulation;
-  const double side = 4 * kR * kRow;
   scene.walls = {floor_at(0), Wall<2>::half_space("left", {0, 0}, {1, 0}),
                  Wall<2>::half_space("right", {side, 0}, {-1, 0}),
                  Wall<2>::half_space("top", {0, side}, {0, -1})};
   scene.fills = {{.name = "gas",
-                  .count = kRow * kRow,
+                  .count = row * row,
                   .radius = kR,
                   .low = {0, 0},
                   .high = {side, side},
                   .arrangement = Arrangement::random,
                   .random_speed = 1}};
+  return scene;
+}
+
+/// The largest energy error of a gas on its way.
+Outcome gas(const Choice& choice, const FigureOptions& options) {
+  constexpr int kRow = 10;
+  Scene<2> scene = gas_in_box(kRow, 4 * kR * kRow);
+  scene.integrator = choice.integrator;
   scene.duration = 0.3;
   const double steps = std::ceil(scene.duration / choice.step);
   scene.time_step.seconds = scene.duration / steps;
@@ -340,20 +345,9 @@ struct Pressure {
 
 Pressure gas_pressure(const FigureOptions& options) {
   const int row = options.quick ? 10 : 30;
-  Scene<2> scene = empty_trial<2>();
-  scene.neighbourhood = NeighbourhoodModel::triangulation;
-  scene.law.stiffness = 1e8;  // hard: an overlap makes the disc smaller
   const double side = 5.6 * kR * row;
-  scene.walls = {floor_at(0), Wall<2>::half_space("left", {0, 0}, {1, 0}),
-                 Wall<2>::half_space("right", {side, 0}, {-1, 0}),
-                 Wall<2>::half_space("top", {0, side}, {0, -1})};
-  scene.fills = {{.name = "gas",
-                  .count = row * row,
-                  .radius = kR,
-                  .low = {0, 0},
-                  .high = {side, side},
-                  .arrangement = Arrangement::random,
-                  .random_speed = 1}};
+  Scene<2> scene = gas_in_box(row, side);
+  scene.law.stiffness = 1e8;  // hard: an overlap makes the disc smaller
   scene.duration = options.quick ? 1 : 6;
   scene.time_step.fraction_of_contact = 1.0 / 15;
   const auto run = make_scene_run(scene, 1);
