@@ -69,8 +69,8 @@ class SimulationRun final : public Run<Dim> {
     if constexpr (Law::needs.spin) return &sim_.grains().omega;
     return nullptr;
   }
-  const Eigen::VectorXd& radii() const override { return sim_.grains().radius; }
-  const Eigen::VectorXd& masses() const override { return sim_.grains().mass; }
+  const Eigen::VectorXd& radii() const override { return sim_.radii(); }
+  const Eigen::VectorXd& masses() const override { return sim_.masses(); }
   const std::vector<Wall<Dim>>& walls() const override { return sim_.walls(); }
   ContactStatistics statistics() const override { return contact_statistics(sim_); }
   Ledger ledger() const override { return energy_ledger(sim_); }

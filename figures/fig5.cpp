@@ -183,8 +183,13 @@ class Recorder {
 
   void after_step() {
     const std::int64_t step = run_.steps();
-    if (record_.impact < 0 && step % 10 == 0) watch_for_impact();
-    if (record_.impact >= 0) record_.deepest_rock = std::min(record_.deepest_rock, underside());
+    if (step % kWatchEvery == 0) {
+      if (record_.impact < 0) {
+        watch_for_impact();
+      } else {
+        record_.deepest_rock = std::min(record_.deepest_rock, underside());
+      }
+    }
     if (step % kForceEvery == 0) {
       const double force = -run_.walls()[0].force.y();
       record_.time.push_back(run_.time());
@@ -258,6 +263,7 @@ class Recorder {
   }
 
   static constexpr std::int64_t kForceEvery = 10;
+  static constexpr std::int64_t kWatchEvery = 100;  // steps between looks at the rock: 1 ms
   static constexpr std::int64_t kLedgerEvery = 200;
 
   Run<2>& run_;

@@ -23,7 +23,8 @@ namespace lagrain::figures {
 namespace {
 
 constexpr std::array<double, 6> kTimes{1.00, 1.05, 1.10, 1.15, 1.20, 1.25};  // [s]
-constexpr double kFilmStart = 0.9, kFilmEnd = 1.5, kFilmEvery = 0.005;       // [s]
+constexpr double kFilmStart = 0.95, kFilmEnd = 1.35, kFilmEvery = 0.005;     // [s]
+constexpr double kFilmDpi = 108;
 
 Colour tint(double radius, const Run<3>& run) {
   const double smallest = run.radii().minCoeff(), largest = run.radii().maxCoeff();
@@ -81,9 +82,9 @@ FigureResult draw_figure8(const FigureOptions& options) {
       DisplayList page{.width = 400, .height = 424};
       page.add(paint_scene3(seen_from_below(*run, run->positions(),
                                             options.quick ? kPreviewSubframes : kVideoSubframes),
-                            Box{{0, 0}, {400, 400}}, 144));
+                            Box{{0, 0}, {400, 400}}, kFilmDpi));
       page.add(Label{.text = label(run->time()), .at = {14, 406}, .size = 14});
-      video.add(paint_rgba(page, 144, Quality::frame));
+      video.add(paint_rgba(page, kFilmDpi, Quality::frame));
     }
   }
   const VideoReport film = video.finish();

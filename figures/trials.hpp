@@ -14,6 +14,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace lagrain::figures {
 
@@ -46,26 +47,27 @@ struct Trial {
 };
 
 /// Runs the scene to its duration in whole steps, the last of which ends there; again and again
-/// until the clock can tell.
+/// until the clock can tell. The cost is the median of these runs: the first finds cold caches.
 /// @param step  wanted; the one taken divides the duration [s]
 /// @throws Interrupted
 template <int Dim>
 Trial<Dim> run_trial(Scene<Dim> scene, double step, const FigureOptions& options) {
-  constexpr double kLeast = 2e-3;  // [s]
+  constexpr double kLeast = 3e-3, kLong = 5e-2;  // [s]
   const double steps = std::ceil(scene.duration / step * (1 - 1e-9));
   scene.time_step.seconds = scene.duration / steps;
   Trial<Dim> trial;
-  double spent = 0;
-  int runs = 0;
+  std::vector<double> costs;
+  double all = 0;
   do {
     if (options.stop()) throw Interrupted();
     trial.run = make_scene_run(scene, 1);
     const double start = bench::processor_seconds();
     while (!trial.run->finished()) trial.run->step();
-    spent += bench::processor_seconds() - start;
-    ++runs;
-  } while (spent < kLeast);
-  trial.cost = spent / runs / scene.duration;
+    const double spent = bench::processor_seconds() - start;
+    costs.push_back(spent / scene.duration);
+    all += spent;
+  } while (all < kLeast || (costs.size() < 3 && all < kLong));
+  trial.cost = bench::median_of(costs);
   return trial;
 }
 

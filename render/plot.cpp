@@ -234,10 +234,12 @@ Ticks log_ticks(double low, double high, int count) {
       const double value = e < 0 ? m / std::pow(10, -e) : m * std::pow(10, e);
       if (value < low * (1 - 1e-9) || value > high * (1 + 1e-9)) continue;
       std::string label;
-      if (m == 1 && (e - lowest_power) % stride == 0) {
+      if (powers < 2 && (m == 1 || m == 2 || m == 5)) {
+        label = e >= -3 && e <= 3 ? plain(value)
+                : m == 1          ? power_of_ten(e)
+                                  : power_of_ten(e, std::to_string(m) + "\\times");
+      } else if (m == 1 && (e - lowest_power) % stride == 0) {
         label = e == 0 ? "1" : e == 1 ? "10" : power_of_ten(e);
-      } else if (powers < 2 && (m == 2 || m == 5)) {
-        label = e >= -2 && e <= 3 ? plain(value) : power_of_ten(e, std::to_string(m) + "\\times");
       }
       out.ticks.push_back({value, label});
     }
@@ -302,11 +304,14 @@ Box add_plot(DisplayList& list, const Box& area, const Plot& plot) {
   const auto tick_length = [](const Tick& tick) {
     return tick.label.empty() ? 0.6 * kTickLength : kTickLength;
   };
+  double taken = area.low[0] - inside.size()[0];  // by labels so far, from the left
   for (const Tick& tick : xt.ticks) {
     if (!x.holds(tick.value)) continue;
     const Vec<2> p(x.at(tick.value), inside.low[1]);
     list.add(Segment{p, p - Vec<2>(0, tick_length(tick)), style::kAxisLine});
-    if (tick.label.empty()) continue;
+    const double half = 0.5 * text_extents(tick.label, style::kSmallText).advance;
+    if (tick.label.empty() || p[0] - half < taken + kGap) continue;
+    taken = p[0] + half;
     list.add(Label{tick.label, p - Vec<2>(0, kTickLength + kGap), style::kSmallText, style::kInk,
                    Across::centre, Along::top});
   }

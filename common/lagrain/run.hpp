@@ -113,7 +113,8 @@ class Run {
 
 /// Builds the simulation that a scene names: places the grains, chooses the types once, evaluates
 /// the forces at time 0.
-/// @throws SceneError if the grains do not fit or overlap, or the time step is not safe
+/// @throws SceneError if the grains do not fit or overlap, or the time step is not safe;
+/// ContractError if a scene that no file was read for has a number that is NaN or out of range
 template <int Dim>
 std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, AnyNeighbourhood<Dim> neighbourhood);
 

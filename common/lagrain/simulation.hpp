@@ -121,6 +121,9 @@ class Simulation {
     if (!view_known_) look();
     return view_;
   }
+  /// What never changes is there without being put together.
+  const Eigen::VectorXd& radii() const { return view_.radius; }  ///< N, by number [m]
+  const Eigen::VectorXd& masses() const { return view_.mass; }   ///< N, by number [kg]
   const std::vector<Wall<Dim>>& walls() const { return walls_; }
   const LawTable<Law>& laws() const { return laws_; }
   const Setting<Dim>& setting() const { return setting_; }
@@ -450,7 +453,7 @@ class Simulation {
       }
       flow_.wall_work -= walls_[w].force.dot(walls_[w].velocity) * force_step_;
     }
-    if (total.excess > 0) report_deep_overlap();
+    if (total.excess > 0) report_deep_overlap(t);
   }
 
   /// All that adds to the loads of a block's grains, in a fixed order.
@@ -490,7 +493,7 @@ class Simulation {
     times_.refresh += seconds(Clock::now() - start);
   }
 
-  [[noreturn]] void report_deep_overlap() {
+  [[noreturn]] void report_deep_overlap(double t) {
     unfinished_ = false;
     double deepest = 0;
     std::ostringstream what;
@@ -498,7 +501,7 @@ class Simulation {
       if (ratio <= deepest) return;
       deepest = ratio;
       what.str({});
-      what << "t = " << time() << " s: grain " << i << " overlaps " << partner << " by " << ratio
+      what << "t = " << t << " s: grain " << i << " overlaps " << partner << " by " << ratio
            << " of the smaller radius";
     };
     for_each_contact([&](Pair pair, const Touch<Dim>& touch, auto&&...) {

@@ -262,8 +262,9 @@ class TriangulationNeighbourhood {
         for (const int i : failed_) {
           double smallest = radius[i];
           t_.for_each_neighbour(i, [&](int j) { smallest = std::min(smallest, radius[j]); });
-          reference_.col(i) = x.col(i) - drift_;
-          set_skin(radius, i, kSmallSkin * smallest);
+          const double skin = kSmallSkin * smallest;
+          reference_.col(i) = x.col(i) - drift_ + skin * aside_.col(i);
+          set_skin(radius, i, skin);
         }
         moved_ = failed_;
         move_references();

@@ -75,6 +75,26 @@ TEST_SUITE("plot") {
     CHECK(ticks.ticks.size() == 19);
     CHECK(labels(log_ticks(1e-8, 1e4, 4)) == Strings{"$10^{-8}$", "$10^{-4}$", "1", "$10^{4}$"});
     CHECK(labels(log_ticks(1.5, 7, 4)) == Strings{"2", "5"});
+    CHECK(labels(log_ticks(0.0013, 0.09)) == Strings{"0.002", "0.005", "0.01", "0.02", "0.05"});
+    CHECK(labels(log_ticks(3e-6, 3e-5)) ==
+          Strings{"$5\\times10^{-6}$", "$10^{-5}$", "$2\\times10^{-5}$"});
+  }
+
+  TEST_CASE("labels that would run into each other are left out") {
+    for (const double width : {80.0, 110.0, 200.0, 400.0}) {
+      DisplayList list{width, 100};
+      Plot plot;
+      plot.x.log = true;
+      plot.series.push_back({"", {3e-6, 3e-5}, {1, 2}});
+      add_plot(list, list.page(), plot);
+      std::vector<Box> below;
+      for (const Item& item : list.items) {
+        const auto* label = std::get_if<Label>(&item);
+        if (label != nullptr && label->along == Along::top) below.push_back(label_box(*label));
+      }
+      CHECK(below.size() >= 1);
+      for (std::size_t k = 1; k < below.size(); ++k) CHECK(below[k].low[0] > below[k - 1].high[0]);
+    }
   }
 
   TEST_CASE("ranges without length are refused") {
