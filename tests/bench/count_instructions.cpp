@@ -1,6 +1,6 @@
 // Steps of a settled bed for callgrind, which counts instructions: the same on a busy machine.
 //
-//   valgrind --tool=callgrind --toggle-collect='take_steps*'
+//   valgrind --tool=callgrind --toggle-collect='*take_steps*'
 //   build/release/tests/bench/count_instructions discs
 //
 // What it "collected", over the grain-steps printed here, is instructions per grain and step.
