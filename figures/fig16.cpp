@@ -584,15 +584,14 @@ FigureResult draw_figure16(const FigureOptions& options) {
       std::to_string(phases) +
       " phases of the impact within a step: a single phase is luck. What to take: with few bodies "
       "neither engine is the cheaper one throughout, the table says where which is. Box2D needs "
-      "one "
-      "step for an impact and springs ten or more, but a step of few discs costs lagrain far less. "
+      "one step for an impact and springs ten or more, but a step of few discs costs lagrain less. "
       "Friction that sticks (c) is Box2D's best case, a row of discs (e) lagrain's. In (a) neither "
       "does better than first order: Box2D because impacts fall between its steps, lagrain because "
       "a dashpot sets in at once. On inclines (d) and in the cradle (e) Box2D errs by single "
       "precision alone, which grows with the number of steps; springs err by their depth. Discs in "
       "touch have no one rigid answer (last table): Box2D's all move off together, springs pass "
-      "nearly all on. At rest, overlap is to lagrain a load over a stiffness "
-      "and to Box2D a tolerance, which more iterations or shorter steps lower, at a price that "
+      "nearly all on. At rest, overlap is to lagrain a load over a stiffness and to Box2D a "
+      "tolerance, which more iterations or shorter steps lower, at a price that "
       "grows with the column. Forces of springs end at double precision, Box2D's at single. With "
       "lagrain, choose the stiffness by the error, and the largest step: shorter ones help in (a) "
       "and (e) alone.";
