@@ -19,9 +19,17 @@ constexpr int padded_to_four(int count) {
   return (count + 3) / 4 * 4;
 }
 
+/// The alignment [bytes] of a record of so many doubles, such that records in a row share as few cache
+/// lines as they can: the largest power of two that divides its size, up to a line.
+constexpr std::size_t record_alignment(int doubles) {
+  std::size_t alignment = 64;
+  while (static_cast<std::size_t>(doubles) * sizeof(double) % alignment != 0) alignment /= 2;
+  return alignment;
+}
+
 /// What contacts read of a grain. Members are the places of the numbers in it.
 template <int Dim, Needs needs>
-struct alignas(Dim == 2 ? 16 : 32) GrainRecord {
+struct GrainRecord {
   static constexpr int kPosition = 0;
   static constexpr int kRadius = Dim;
   static constexpr int kVelocity = Dim + 1;
@@ -30,7 +38,7 @@ struct alignas(Dim == 2 ? 16 : 32) GrainRecord {
   static constexpr int kInverseInertia = kOmega + kSpinDim<Dim>;
   static constexpr int kSize = needs.spin ? padded_to_four(kInverseInertia + 1) : kOmega;
 
-  std::array<double, kSize> at{};
+  alignas(record_alignment(kSize)) std::array<double, kSize> at{};
 
   Eigen::Map<Vec<Dim>> position() { return Eigen::Map<Vec<Dim>>(&at[kPosition]); }
   Eigen::Map<const Vec<Dim>> position() const { return Eigen::Map<const Vec<Dim>>(&at[kPosition]); }
@@ -45,13 +53,13 @@ struct alignas(Dim == 2 ? 16 : 32) GrainRecord {
 
 /// What contacts write: the force and torque on a grain. Its mass fills a gap.
 template <int Dim, Needs needs>
-struct alignas(32) LoadRecord {
+struct LoadRecord {
   static constexpr int kForce = 0;
   static constexpr int kMass = Dim;
   static constexpr int kTorque = Dim + 1;
   static constexpr int kSize = padded_to_four(kTorque + (needs.spin ? kSpinDim<Dim> : 0));
 
-  std::array<double, kSize> at{};
+  alignas(record_alignment(kSize)) std::array<double, kSize> at{};
 
   Eigen::Map<Vec<Dim>> force() { return Eigen::Map<Vec<Dim>>(&at[kForce]); }
   Eigen::Map<const Vec<Dim>> force() const { return Eigen::Map<const Vec<Dim>>(&at[kForce]); }
@@ -60,6 +68,14 @@ struct alignas(32) LoadRecord {
     return Eigen::Map<const SpinVec<Dim>>(&at[kTorque]);
   }
 };
+
+/// Asks for a record that contacts will read in no good order, before they wait for memory.
+template <class Record>
+void fetch_ahead(const Record& record) {
+  constexpr std::size_t kLine = 64;
+  const char* bytes = reinterpret_cast<const char*>(&record);
+  for (std::size_t k = 0; k < sizeof(Record); k += kLine) __builtin_prefetch(bytes + k);
+}
 
 /// Bytes that a step reads and writes of one grain in this model: its records, what velocity Verlet
 /// remembers, and where the near list saw it last. Several kinds add one byte.

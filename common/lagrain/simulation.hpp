@@ -330,7 +330,7 @@ class Simulation {
       for (int block = 0; block < near_.blocks(); ++block) f(block);
       return;
     }
-#pragma omp parallel for schedule(dynamic) num_threads(setting_.threads)
+#pragma omp parallel for schedule(static) num_threads(setting_.threads)
     for (int block = 0; block < near_.blocks(); ++block) f(block);
   }
 
@@ -462,6 +462,7 @@ class Simulation {
     const auto start = measuring_ ? Clock::now() : Clock::time_point{};
     for (int slot = near_.first_slot(block); slot < near_.end_slot(block); ++slot) {
       weigh(loads_[index(slot)]);
+      fetch_ahead(records_[index(slot)]);
     }
     part.within = kernel_.pairs(scene, near_.within, near_.first_within(block),
                                 near_.first_within(block + 1));
@@ -556,7 +557,7 @@ class Simulation {
   }
 
   /// Blocks of slots, the unit of work of a thread: large enough that few pairs lie across them.
-  static constexpr int kLeastBlock = 2048;
+  static constexpr int kLeastBlock = Dim == 2 ? 1024 : 2048;
   static constexpr int kMostBlocks = 128;
 
   /// What a block's sweeps added up.
