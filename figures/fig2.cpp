@@ -151,11 +151,7 @@ DisplayList picture_of(const Figure2& figure) {
   add_misprint(list, figure.roots, {{x, bottom}, {x + right, bottom + small}},
                "(c) weight $r^{1/2}$: edge 2\xE2\x80\x93"
                "3, the contact is missed");
-  add_legend_row(list, {kMargin, kMargin + 5},
-                 {{LegendEntry::Sample::line, kEdgeLine, "edge of T"},
-                  {LegendEntry::Sample::line, style::kCellLine, "between cells"},
-                  {LegendEntry::Sample::line, kContactLine, "edge with a contact"},
-                  {LegendEntry::Sample::dashes, kMissedLine, "contact without an edge"}});
+  add_detection_legend(list, {kMargin, kMargin + 5});
   return list;
 }
 

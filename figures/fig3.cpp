@@ -145,11 +145,7 @@ DisplayList picture_of(const Figure3& figure) {
   add_square(list, figure.above, {x, bottom},
              "(c) just above: contact 0\xE2\x80\x93"
              "1 is missed");
-  add_legend_row(list, {kMargin, kMargin + 5},
-                 {{LegendEntry::Sample::line, kEdgeLine, "edge of T"},
-                  {LegendEntry::Sample::line, style::kCellLine, "between cells"},
-                  {LegendEntry::Sample::line, kContactLine, "edge with a contact"},
-                  {LegendEntry::Sample::dashes, kMissedLine, "contact without an edge"}});
+  add_detection_legend(list, {kMargin, kMargin + 5});
   return list;
 }
 

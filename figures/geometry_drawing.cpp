@@ -235,6 +235,15 @@ double add_legend_row(DisplayList& list, const Vec<2>& left, const std::vector<L
   return x - kBetween;
 }
 
+void add_detection_legend(DisplayList& list, const Vec<2>& left) {
+  using enum LegendEntry::Sample;
+  add_legend_row(list, left,
+                 {{line, kEdgeLine, "edge of T"},
+                  {line, style::kCellLine, "between cells"},
+                  {line, kContactLine, "edge with a contact"},
+                  {dashes, kMissedLine, "contact without an edge"}});
+}
+
 void add_arrow(DisplayList& list, const Vec<2>& from, const Vec<2>& to, const Stroke& stroke) {
   const double length = (to - from).norm();
   if (length == 0) return;

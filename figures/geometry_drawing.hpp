@@ -75,6 +75,8 @@ struct LegendEntry {
 /// Entries beside each other from `left` on; returns where the last ends [pt].
 double add_legend_row(DisplayList& list, const Vec<2>& left, const std::vector<LegendEntry>& row);
 double legend_width(const std::vector<LegendEntry>& row);
+/// What the lines of T, its cells and its contacts mean, found and missed ones.
+void add_detection_legend(DisplayList& list, const Vec<2>& left);
 
 /// Arrow with an open head.
 void add_arrow(DisplayList& list, const Vec<2>& from, const Vec<2>& to, const Stroke& stroke);
