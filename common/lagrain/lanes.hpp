@@ -126,12 +126,19 @@ inline constexpr int kLanes<Lanes<W>> = W;
 inline double lane(double a, int) {
   return a;
 }
+inline bool lane(bool a, int) {
+  return a;
+}
 inline void set_lane(double& a, int, double value) {
   a = value;
 }
 template <int W>
 double lane(const Lanes<W>& a, int k) {
   return a.v[k];
+}
+template <int W>
+bool lane(const LaneMask<W>& a, int k) {
+  return a.v[k] != 0;
 }
 template <int W>
 void set_lane(Lanes<W>& a, int k, double value) {

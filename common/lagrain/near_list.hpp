@@ -145,7 +145,7 @@ class NearList {
   static constexpr double kHorizon = 100;      // steps that a grain may keep its speed
   static constexpr double kCeiling = 0.3;      // of a radius: wider lists cost more than refreshes
   static constexpr double kLeastFloor = 1e-4;  // of a radius
-  static constexpr double kMostFloor = 5e-2;
+  static constexpr double kMostFloor = 0.1;
 
   struct Stay {
     Vec<Dim> centre;
@@ -161,7 +161,7 @@ class NearList {
   void adapt(std::int64_t step) {
     if (refreshes_ > 0) {
       const std::int64_t age = step - last_refresh_;
-      if (age < 15) floor_ = std::min(floor_ * 1.25, kMostFloor);
+      if (age < 30) floor_ = std::min(floor_ * 1.25, kMostFloor);
       if (age > 60) floor_ = std::max(floor_ * 0.7, kLeastFloor);
     }
     last_refresh_ = step;

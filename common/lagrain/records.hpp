@@ -19,8 +19,8 @@ constexpr int padded_to_four(int count) {
   return (count + 3) / 4 * 4;
 }
 
-/// The alignment [bytes] of a record of so many doubles, such that records in a row share as few cache
-/// lines as they can: the largest power of two that divides its size, up to a line.
+/// The alignment [bytes] of a record of so many doubles, such that records in a row share as few
+/// cache lines as they can: the largest power of two that divides its size, up to a line.
 constexpr std::size_t record_alignment(int doubles) {
   std::size_t alignment = 64;
   while (static_cast<std::size_t>(doubles) * sizeof(double) % alignment != 0) alignment /= 2;

@@ -422,15 +422,17 @@ class Simulation {
         records_.data(), loads_.data(),           &kinds_, &laws_, walls_.data(),
         force_step_,     setting_.largest_overlap};
     const int blocks = near_.blocks();
-    parts_.assign(index(blocks), {});
+    parts_.resize(index(blocks));
+    for (Part& part : parts_) part.pair_seconds = part.wall_seconds = 0;
     kept_.resize(near_.across.size());
     wall_parts_.assign(index(blocks) * walls_.size(), Vec<Dim>::Zero());
     if (blocks > 1) {
       for_each_block([&](int block) {
         Part& part = parts_[index(block)];
         const auto start = measuring_ ? Clock::now() : Clock::time_point{};
-        part.across = kernel_.pairs(scene, near_.across, near_.first_across(block),
-                                    near_.first_across(block + 1), kept_.data());
+        const std::size_t first = near_.first_across(block), end = near_.first_across(block + 1);
+        part.across = kernel_.pairs(scene, near_.across, first, end,
+                                    listing_for(end - first, part.across.contacts), kept_.data());
         if (measuring_) part.pair_seconds += seconds(Clock::now() - start);
       });
     }
@@ -464,8 +466,9 @@ class Simulation {
       weigh(loads_[index(slot)]);
       fetch_ahead(records_[index(slot)]);
     }
-    part.within = kernel_.pairs(scene, near_.within, near_.first_within(block),
-                                near_.first_within(block + 1));
+    const std::size_t first = near_.first_within(block), last = near_.first_within(block + 1);
+    part.within = kernel_.pairs(scene, near_.within, first, last,
+                                listing_for(last - first, part.within.contacts));
     for (const auto& end : near_.ends(block)) {
       const PairLoad<Dim, needs>& both = kept_[index(end.pair)];
       Load& load = loads_[index(end.slot)];
@@ -560,7 +563,7 @@ class Simulation {
   static constexpr int kLeastBlock = Dim == 2 ? 1024 : 2048;
   static constexpr int kMostBlocks = 128;
 
-  /// What a block's sweeps added up.
+  /// What a block's sweeps added up. How many contacts there were is a guess for the next step.
   struct Part {
     Tally across, within, walls;
     double pair_seconds = 0, wall_seconds = 0;

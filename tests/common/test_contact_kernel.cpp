@@ -131,22 +131,28 @@ TEST_SUITE("contact_kernel") {
   TEST_CASE_TEMPLATE("every instruction set gives the bits of the scalar path", C, KERNEL_CASES) {
     constexpr int Dim = C::Dim;
     using Law = typename C::Law;
-    for (const int kind_count : {1, 2}) {
-      // Counts that fill the lanes and counts that do not.
-      for (const int count : {2, 6, 9, 30, 61}) {
+    for (const auto& [kind_count, listing] : {std::pair{1, Listing::tight},
+                                              {1, Listing::loose},
+                                              {2, Listing::tight},
+                                              {2, Listing::loose}}) {
+      // Counts that fill the lanes and the stretches that are searched, and counts that do not.
+      for (const int count : {2, 6, 9, 30, 61, 250}) {
         CAPTURE(kind_count);
+        CAPTURE(static_cast<int>(listing));
         CAPTURE(count);
-        const auto run = [&](InstructionSet set, Heap<Dim, Law>& heap,
+        const auto run = [&, kinds = kind_count, how = listing](
+                             InstructionSet set, Heap<Dim, Law>& heap,
                              std::vector<PairLoad<Dim, Law::needs>>& kept,
                              std::vector<Vec<Dim>>& wall_forces) {
-          const ContactKernel<Dim, Law> kernel(set, kind_count == 1);
+          const ContactKernel<Dim, Law> kernel(set, kinds == 1);
           const auto scene = heap.scene();
           wall_forces.assign(2, Vec<Dim>::Zero());
           kept.resize(heap.pairs.size());
           std::vector<Tally> tallies;
           for (int step = 0; step < 3; ++step) {
-            tallies.push_back(kernel.pairs(scene, heap.pairs, 0, heap.pairs.size()));
-            tallies.push_back(kernel.pairs(scene, heap.pairs, 1, heap.pairs.size(), kept.data()));
+            tallies.push_back(kernel.pairs(scene, heap.pairs, 0, heap.pairs.size(), how));
+            tallies.push_back(
+                kernel.pairs(scene, heap.pairs, 1, heap.pairs.size(), how, kept.data()));
             tallies.push_back(kernel.walls(scene, heap.wall_pairs, 0, heap.wall_pairs.size(),
                                            wall_forces.data()));
           }
@@ -177,8 +183,46 @@ TEST_SUITE("contact_kernel") {
             CHECK(tallies[k].dashpot == expected[k].dashpot);
             CHECK(tallies[k].friction == expected[k].friction);
             CHECK(tallies[k].excess == expected[k].excess);
+            CHECK(tallies[k].contacts == expected[k].contacts);
           }
         }
+      }
+    }
+  }
+
+  TEST_CASE_TEMPLATE("a list searched first for what touches gives the bits of the whole list", C,
+                     KERNEL_CASES) {
+    constexpr int Dim = C::Dim;
+    using Law = typename C::Law;
+    using Kept = std::vector<PairLoad<Dim, Law::needs>>;
+    for (const InstructionSet set : instruction_sets()) {
+      CAPTURE(static_cast<int>(set));
+      const ContactKernel<Dim, Law> kernel(set, true);
+      Heap<Dim, Law> tight(400, 1), loose(400, 1);
+      const std::size_t end = tight.pairs.size();
+      // What stood there before must go where nothing touches.
+      PairLoad<Dim, Law::needs> stale;
+      stale.for_i.at.fill(7);
+      stale.for_j.at.fill(7);
+      Kept kept_tight(end, stale), kept_loose(end, stale);
+      REQUIRE(end > 600);  // several stretches
+
+      const Tally a = kernel.pairs(tight.scene(), tight.pairs, 3, end, Listing::tight);
+      const Tally b = kernel.pairs(loose.scene(), loose.pairs, 3, end, Listing::loose);
+      kernel.pairs(tight.scene(), tight.pairs, 0, end, Listing::tight, kept_tight.data());
+      kernel.pairs(loose.scene(), loose.pairs, 0, end, Listing::loose, kept_loose.data());
+
+      CHECK(a.contacts > 100);
+      CHECK(a.contacts < 0.9 * static_cast<double>(end));
+      CHECK(b.contacts == a.contacts);
+      CHECK(b.excess == a.excess);
+      CHECK(b.dashpot == doctest::Approx(a.dashpot).epsilon(1e-12));
+      CHECK(b.friction == doctest::Approx(a.friction).epsilon(1e-12));
+      CHECK(same_loads(loose, tight));
+      CHECK(same_memories(loose.pairs, tight.pairs));
+      for (std::size_t k = 0; k < end; ++k) {
+        CHECK(kept_loose[k].for_i.at == kept_tight[k].for_i.at);
+        CHECK(kept_loose[k].for_j.at == kept_tight[k].for_j.at);
       }
     }
   }
@@ -195,7 +239,8 @@ TEST_SUITE("contact_kernel") {
       std::vector<PairLoad<Dim, Law::needs>> kept(heap.pairs.size());
       const ContactKernel<Dim, Law> kernel(instruction_sets().back(), kind_count == 1);
 
-      const Tally tally = kernel.pairs(heap.scene(), heap.pairs, 0, heap.pairs.size(), kept.data());
+      const Tally tally =
+          kernel.pairs(heap.scene(), heap.pairs, 0, heap.pairs.size(), Listing::tight, kept.data());
 
       double dashpot = 0, friction = 0, deepest = 0;
       int touching_count = 0;
@@ -235,6 +280,7 @@ TEST_SUITE("contact_kernel") {
       CHECK(tally.dashpot == doctest::Approx(dashpot).epsilon(1e-12));
       CHECK(tally.friction == doctest::Approx(friction).epsilon(1e-12));
       CHECK(tally.excess == deepest);
+      CHECK(tally.contacts == touching_count);
     }
   }
 }
