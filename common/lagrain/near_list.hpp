@@ -162,7 +162,7 @@ class NearList {
     if (refreshes_ > 0) {
       const std::int64_t age = step - last_refresh_;
       if (age < 30) floor_ = std::min(floor_ * 1.25, kMostFloor);
-      if (age > 60) floor_ = std::max(floor_ * 0.7, kLeastFloor);
+      if (age > 60) floor_ = std::max(floor_ * 0.4, kLeastFloor);
     }
     last_refresh_ = step;
   }
