@@ -47,9 +47,9 @@ struct Tally {
   }
 };
 
-/// How many of the listed pairs touch: most of them in a bed at rest, few where grains fly. Then the
-/// law is not worth its time for all: a loose list is searched first for those that touch. Forces
-/// do not depend on the choice, bit for bit; losses are added in other parts.
+/// How many of the listed pairs touch: most of them in a bed at rest, few where grains fly. Then
+/// the law is not worth its time for all: a loose list is searched first for those that touch.
+/// Forces do not depend on the choice, bit for bit; losses are added in other parts.
 enum class Listing { tight, loose };
 
 /// What is faster for so many pairs of which so many touch. In beds at rest the search was measured
@@ -361,7 +361,7 @@ struct Sweep {
     }
     const auto body_i = read_bodies<Real>(scene.grains, i),
                body_j = read_bodies<Real>(scene.grains, j);
-    const auto [touching, touch] = touch_of(body_i, body_j);
+    auto [touching, touch] = touch_of(body_i, body_j);
     if (!any(touching)) {
       write_memory(table, at, Memory{});
       if (out != nullptr) {
@@ -369,6 +369,8 @@ struct Sweep {
       }
       return;
     }
+    // A lane apart that seems to slide would make all take the long way through the law.
+    for (int d = 0; d < Dim; ++d) touch.slip[d] = only_if(touching, touch.slip[d]);
     Memory memory = read_memory(table, at);
     const Response<Dim, Real> response = respond(
         touch, touching, i, [&](std::size_t k) { return kind(j[k]); }, memory);
