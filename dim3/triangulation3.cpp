@@ -120,7 +120,7 @@ UpdateReport Triangulation<3>::remove(int id) {
   }
   touched_.clear();
   hull_touched_ = false;
-  const bool taken = !tiny() && take_out(id, sites_.data());
+  const bool taken = !tiny() && take_out(id);
   topology_.set_corner_of(id, Topology3::kNone);
   if (taken) {
     if (hull_touched_) choose_middle_at_rest();

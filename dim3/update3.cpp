@@ -314,6 +314,11 @@ bool Triangulation<3>::resolve(int corner) {
   return true;
 }
 
+/// Far above any need.
+std::int64_t Triangulation<3>::most_flips() const {
+  return 64 * static_cast<std::int64_t>(topology_.slots()) + 10000;
+}
+
 /// Flips until the queue is empty; facets that cannot be flipped end in stuck_.
 /// @return false if the budget is spent, which means that T was no triangulation
 bool Triangulation<3>::drain() {
@@ -356,7 +361,7 @@ bool Triangulation<3>::refill_around(int corner) {
     collect_vertices(cavity, sites);
     for (int& cell : cavity) cell >>= 2;
     const std::size_t first = touched_.size();
-    if (!refill(cavity, sites, sites_.data(), nullptr)) continue;
+    if (!refill(cavity, sites, nullptr)) continue;
     // An infinite cell of the small triangulation may not see the middle.
     const auto fresh = std::span(touched_).subspan(first);
     if (!std::all_of(fresh.begin(), fresh.end(), [&](int cell) { return positive(cell); })) {
@@ -374,7 +379,7 @@ bool Triangulation<3>::refill_around(int corner) {
 bool Triangulation<3>::flip_to_regular() {
   queue_.clear();
   stuck_.clear();
-  budget_ = 64 * static_cast<std::int64_t>(topology_.slots()) + 10000;
+  budget_ = most_flips();
   around_.insert(around_.end(), touched_.begin(), touched_.end());
   topology_.clear_marks();
   for (const int cell : around_) topology_.set_mark(cell);
@@ -503,12 +508,16 @@ bool Triangulation<3>::extract_inverted() {
     touched_.resize(first);
     if (!choose_cover(unresolved_)) return false;
     if (report_.extracted + static_cast<std::int64_t>(cover_.size()) > most) return false;
-    for (const int site : cover_) {
+    sites_.swap(before_);  // T is regular at the old places
+    const bool taken = std::all_of(cover_.begin(), cover_.end(), [&](int site) {
       const int hint = finite_neighbour(site);
-      if (!take_out(site, before_.data())) return false;
+      if (!take_out(site)) return false;
       hide(site, hint);
       ++report_.extracted;
-    }
+      return true;
+    });
+    sites_.swap(before_);
+    if (!taken) return false;
     inverted_.insert(inverted_.end(), touched_.begin() + static_cast<std::ptrdiff_t>(first),
                      touched_.end());
     sort_unique(inverted_);

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -48,6 +49,8 @@ namespace lagrain {
 /// 4. Positive tetrahedra and a hull that goes round once make a triangulation; with all facets
 ///    locally regular it is the regular one. If any of this fails, build anew.
 /// 5. Insert what was taken out, and try the hidden sites.
+/// A site is taken out by flips as well, in an order that leaves T regular; where they get stuck,
+/// the regular triangulation of its neighbours fills its star.
 ///
 /// Why flips may be trusted while tetrahedra are inverted: T, the vertex at infinity included, maps
 /// a 3-sphere onto a 3-sphere. Moving sites and exchanging the two sides of a flip change this map,
@@ -173,6 +176,14 @@ class Triangulation<3> {
     int inside;                // corner found in the small triangulation
   };
 
+  /// A tetrahedron that one flip may cut off the star of a site: see flip_out.
+  struct Ear {
+    bool infinite;  // these go last
+    double key;     // in increasing order
+    int corner;     // at the facet between the two cells of the star
+    auto operator<=>(const Ear&) const = default;
+  };
+
   static constexpr int kEdges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
   static constexpr int kRings = 4;  ///< cavities wider than this are not tried
 
@@ -203,9 +214,12 @@ class Triangulation<3> {
   void place_auxiliaries(Quad& simplex, const Site3* away);
   bool insert_visible(int site);
   void note_edges_of_insertion(int site);
-  bool refill(std::span<const int> hole, std::span<const int> sites, const Site3* places,
-              const Site3* away);
-  bool take_out(int site, const Site3* places);
+  bool refill(std::span<const int> hole, std::span<const int> sites, const Site3* away);
+  bool take_out(int site);
+  bool flip_out(int site);
+  void list_ears(int at);
+  Ear ear_at(int corner, int site) const;
+  bool flip_last(int site);
   void hide(int site, int hint);
 
   // Steps of an update (update3.cpp).
@@ -220,6 +234,7 @@ class Triangulation<3> {
   bool resolve(int corner);
   bool resolve_inverted(int cell);
   void undo_flips();
+  std::int64_t most_flips() const;
   bool drain();
   bool settle();
   bool refill_around(int corner);
@@ -245,12 +260,13 @@ class Triangulation<3> {
 
   // Scratch of an update, kept so that a small update costs nothing that grows with size().
   UpdateReport report_;
-  std::int64_t budget_ = 0;     // of flips, far above any need
+  std::int64_t budget_ = 0;     // of flips
   bool hull_touched_ = false;   // the hull has to be checked
   bool logging_ = false;        // flips go to log_
   int last_ = 0;                // inserted last: where to start looking for the next
   std::vector<int> site_note_;  // by id, zero between uses
   std::vector<Flip> log_;
+  std::vector<Ear> ears_;           // a heap
   std::vector<int> queue_, stuck_;  // facets to be looked at, facets that would not flip
   std::vector<int> moved_, around_, inverted_, unresolved_, cover_, touched_;
   std::vector<int> hole_, rim_, cavity_, cavity_sites_, inside_, pending_;

@@ -259,6 +259,28 @@ TEST_SUITE("triangulation3") {
 }
 
 TEST_SUITE("triangulation3: the hull") {
+  TEST_CASE("sites in general position are taken out by flips alone, corners of the hull too") {
+    for (int seed = 0; seed < test::cases(5, 100); ++seed) {
+      CAPTURE(seed);
+      Random random(static_cast<std::uint64_t>(seed));
+      const auto s = test3::jittered(random, 5);
+      auto t = test::built(s);
+      auto ids = test::all_ids(s.size());
+      while (static_cast<int>(ids.size()) > Triangulation<3>::kTiny) {
+        CAPTURE(ids.size());
+        std::swap(ids[static_cast<std::size_t>(random.below(static_cast<int>(ids.size())))],
+                  ids.back());
+
+        const UpdateReport report = t.remove(ids.back());
+
+        ids.pop_back();
+        CHECK(report.flips > 0);
+        CHECK(report.rebuilds == 0);
+        CHECK(test::audited(t) == "");
+      }
+    }
+  }
+
   TEST_CASE("layers on a floor that shake are never built anew") {
     // On the floor exactly, off it by rounding, and by a millionth.
     for (const double rough : {0.0, 1e-15, 1e-6}) {
