@@ -432,24 +432,60 @@ class Harness {
     });
   }
 
+  /// One scene: round by round through all sizes, so that their ratio is of one and the same hour.
   void add_growth(std::vector<std::function<void()>>& scenes) {
-    for (const int tiles : quick() ? std::vector<int>{1, 4} : std::vector<int>{1, 10, 100, 1000}) {
-      scenes.emplace_back([this, tiles] {
+    scenes.emplace_back([this] {
+      std::vector<std::unique_ptr<Match<2>>> matches;
+      for (const int tiles :
+           quick() ? std::vector<int>{1, 4} : std::vector<int>{1, 10, 100, 1000}) {
         const Bed<2> bed = tiled<2>(disc_tile(), {tiles});
         Plan plan = plan_for(bed.count(), 3e6);
         plan.oracle = plan.rebuilt = plan.lammps = false;
-        if (tiles == 1000) plan.rounds = 2;
-        compete<2>(kGrowthGroup, "discs", bed, plan, bed.count());
-      });
-    }
+        matches.push_back(prepare<2>(kGrowthGroup, "discs", bed, plan, bed.count()));
+      }
+      for (int round = 0; round < matches.front()->plan.rounds; ++round) {
+        for (const auto& match : matches) play(*match, round);
+      }
+      for (const auto& match : matches) finish(*match);
+    });
   }
 
   // The competition.
 
+  /// One scene and all who take part.
+  template <int Dim>
+  struct Match {
+    struct Entry {
+      std::string name;
+      std::function<Sample<Dim>(bool careful)> run;  // reads this match, which stays in its place
+      std::vector<std::vector<Phase>> phases;        // by round
+      bool out = false;
+    };
+    Bed<Dim> bed;
+    Plan plan;
+    SceneSpeed scene;
+    std::vector<Entry> entries;
+    Columns<Dim> reference;
+  };
+
   template <int Dim>
   void compete(const std::string& group, const std::string& what, const Bed<Dim>& bed,
                const Plan& plan, double parameter) {
-    SceneSpeed scene;
+    const auto match = prepare<Dim>(group, what, bed, plan, parameter);
+    for (int round = 0; round < plan.rounds; ++round) play(*match, round);
+    finish(*match);
+  }
+
+  template <int Dim>
+  std::unique_ptr<Match<Dim>> prepare(const std::string& group, const std::string& what,
+                                      const Bed<Dim>& its_bed, const Plan& its_plan,
+                                      double parameter) {
+    auto match = std::make_unique<Match<Dim>>();
+    match->bed = its_bed;
+    match->plan = its_plan;
+    const Bed<Dim>& bed = match->bed;
+    const Plan& plan = match->plan;
+    SceneSpeed& scene = match->scene;
     scene.group = group;
     scene.name = grouped(bed.count()) + " " + what;
     if (group != kSettledGroup && group != kGrowthGroup) {
@@ -461,27 +497,23 @@ class Harness {
     scene.time_step = bed.setting.time_step;
     scene.parameter = parameter;
 
-    struct Entry {
-      std::string name;
-      std::function<Sample<Dim>(bool careful)> run;
+    const auto enter = [&](const char* name, std::function<Sample<Dim>(bool careful)> run) {
+      match->entries.push_back({name, std::move(run), {}, false});
     };
-    std::vector<Entry> entries;
     const auto add = [&]<class N>(const char* name, N neighbourhood) {
-      entries.push_back({name, [this, &bed, &plan, neighbourhood](bool careful) {
-                           return run_lagrain<Dim, N>(bed, plan, neighbourhood, careful,
-                                                      checkpoint_);
-                         }});
+      enter(name, [this, &bed, &plan, neighbourhood](bool careful) {
+        return run_lagrain<Dim, N>(bed, plan, neighbourhood, careful, checkpoint_);
+      });
     };
     doing_ = scene.name;
     add(kTriangulation, TriangulationNeighbourhood<Dim>{});
     if (plan.oracle) {
       const Oracle<Dim> oracle(record_answers<Dim>(bed, plan.warm_up + plan.steps, checkpoint_));
-      entries.push_back(
-          {kOracle, [this, &bed, &plan, oracle](bool careful) {
-             return without_neighbourhood(
-                 run_lagrain<Dim, Oracle<Dim>>(bed, plan, oracle, careful, checkpoint_),
-                 bed.count(), plan.steps);
-           }});
+      enter(kOracle, [this, &bed, &plan, oracle](bool careful) {
+        return without_neighbourhood(
+            run_lagrain<Dim, Oracle<Dim>>(bed, plan, oracle, careful, checkpoint_), bed.count(),
+            plan.steps);
+      });
     }
     add(kCells, CellGrid<Dim>{});
     if (plan.rebuilt) add(kRebuilt, RebuiltTriangulation<Dim>{});
@@ -489,53 +521,59 @@ class Harness {
       const auto add_lammps = [&](const char* name, bool multi) {
         const fs::path folder =
             options_.out / "lammps" / folder_name(scene.name + (multi ? " multi" : ""));
-        entries.push_back({name, [this, &bed, &plan, folder, multi](bool) {
-                             return run_lammps_sample<Dim>(*lammps_, folder, bed,
-                                                           {plan.warm_up, plan.steps, multi});
-                           }});
+        enter(name, [this, &bed, &plan, folder, multi](bool) {
+          return run_lammps_sample<Dim>(*lammps_, folder, bed, {plan.warm_up, plan.steps, multi});
+        });
       };
       if (plan.bin) add_lammps(kLammps, false);
       if (plan.multi) add_lammps(kLammpsMulti, true);
     }
+    scene.contenders.resize(match->entries.size());
+    return match;
+  }
 
-    scene.contenders.resize(entries.size());
-    std::vector<bool> out(entries.size(), false);
-    std::vector<std::vector<std::vector<Phase>>> phases(entries.size());
-    Columns<Dim> reference;
-    for (int round = 0; round < plan.rounds; ++round) {
-      for (std::size_t k = 0; k < entries.size(); ++k) {
-        if (out[k]) continue;
-        Contender& contender = scene.contenders[k];
-        contender.name = entries[k].name;
-        doing_ = scene.name + ": " + contender.name + ", round " + std::to_string(round + 1);
-        checkpoint_();
-        try {
-          const Sample<Dim> sample = entries[k].run(round == 0);
-          const double grain_steps = static_cast<double>(bed.count()) * plan.steps;
-          contender.ns.push_back(1e9 * sample.cpu / grain_steps);
-          phases[k].push_back(sample.phases);
-          if (round > 0) continue;
-          contender.errors = sample.errors;
-          if (k == 0) reference = sample.position;
-          contender.errors.astray =
-              (sample.position - reference).colwise().norm().maxCoeff() / smallest_radius(bed);
-        } catch (const SimulationError& error) {
-          // Ctrl-C reaches LAMMPS too; else a contender that fails leaves the others running.
-          if (options_.stop()) throw Interrupted();
-          if (k == 0) throw;
-          results_.notes.push_back(scene.name + ", " + contender.name + ": " + error.what());
-          out[k] = true;
+  /// Each once, in turn.
+  template <int Dim>
+  void play(Match<Dim>& match, int round) {
+    for (std::size_t k = 0; k < match.entries.size(); ++k) {
+      auto& entry = match.entries[k];
+      if (entry.out) continue;
+      Contender& contender = match.scene.contenders[k];
+      contender.name = entry.name;
+      doing_ = match.scene.name + ": " + entry.name + ", round " + std::to_string(round + 1);
+      checkpoint_();
+      try {
+        const Sample<Dim> sample = entry.run(round == 0);
+        const double grain_steps = static_cast<double>(match.bed.count()) * match.plan.steps;
+        contender.ns.push_back(1e9 * sample.cpu / grain_steps);
+        entry.phases.push_back(sample.phases);
+        if (round > 0) continue;
+        contender.errors = sample.errors;
+        if (k == 0) match.reference = sample.position;
+        contender.errors.astray = (sample.position - match.reference).colwise().norm().maxCoeff() /
+                                  smallest_radius(match.bed);
+      } catch (const SimulationError& error) {
+        // Ctrl-C reaches LAMMPS too; else a contender that fails leaves the others running.
+        if (options_.stop()) throw Interrupted();
+        if (k == 0) throw;
+        results_.notes.push_back(match.scene.name + ", " + entry.name + ": " + error.what());
+        entry.out = true;
+      }
+    }
+  }
+
+  template <int Dim>
+  void finish(Match<Dim>& match) {
+    for (std::size_t k = 0; k < match.entries.size(); ++k) {
+      Contender& contender = match.scene.contenders[k];
+      for (std::size_t round = 0; round < contender.ns.size(); ++round) {
+        if (contender.ns[round] == contender.median()) {
+          contender.phases = match.entries[k].phases[round];
         }
       }
     }
-    for (std::size_t k = 0; k < entries.size(); ++k) {
-      Contender& contender = scene.contenders[k];
-      for (std::size_t round = 0; round < contender.ns.size(); ++round) {
-        if (contender.ns[round] == contender.median()) contender.phases = phases[k][round];
-      }
-    }
-    std::erase_if(scene.contenders, [](const Contender& c) { return c.ns.empty(); });
-    results_.scenes.push_back(scene);
+    std::erase_if(match.scene.contenders, [](const Contender& c) { return c.ns.empty(); });
+    results_.scenes.push_back(match.scene);
   }
 
   /// The oracle knows the contacts for nothing: what the run spends on asking it does not count.
