@@ -261,6 +261,22 @@ class Harness {
     return plan;
   }
 
+  /// One scene and all who take part.
+  template <int Dim>
+  struct Match {
+    struct Entry {
+      std::string name;
+      std::function<Sample<Dim>(bool careful)> run;  // reads this match, which stays in its place
+      std::vector<std::vector<Phase>> phases;        // by round
+      bool out = false;
+    };
+    Bed<Dim> bed;
+    Plan plan;
+    SceneSpeed scene;
+    std::vector<Entry> entries;
+    Columns<Dim> reference;
+  };
+
   // Beds. Each tile settles once.
 
   const Bed<2>& disc_tile() {
@@ -332,7 +348,8 @@ class Harness {
   }
 
   template <int Dim>
-  void mixture(const Bed<Dim>& tile, const std::vector<int>& copies, int ratio, int large) {
+  std::unique_ptr<Match<Dim>> mixture(const Bed<Dim>& tile, const std::vector<int>& copies,
+                                      int ratio, int large) {
     Bed<Dim> bed = tiled<Dim>(tile, copies);
     const double small = bed.grains.front().radius;
     const double largest =
@@ -346,27 +363,32 @@ class Harness {
     plan.multi = ratio > 1;
     plan.bin = ratio <= 10;
     plan.rebuilt = false;
-    compete<Dim>(kSizesGroup,
-                 std::string(Dim == 2 ? "discs" : "spheres") + " 1 : " + std::to_string(ratio), bed,
-                 plan, ratio);
+    return prepare<Dim>(
+        kSizesGroup, std::string(Dim == 2 ? "discs" : "spheres") + " 1 : " + std::to_string(ratio),
+        bed, plan, ratio);
   }
   void add_sizes(std::vector<std::function<void()>>& scenes) {
     struct Mix {
       int ratio, tiles, large;
     };
-    for (const Mix& mix : {Mix{1, 20, 0}, {10, 21, 10}, {30, 22, 4}, {100, 30, 2}}) {
-      if (quick() && mix.ratio > 10) continue;
-      scenes.emplace_back([this, mix] {
-        mixture<2>(disc_tile(), {quick() ? 4 : mix.tiles}, mix.ratio,
-                   quick() ? std::min(mix.large, 2) : mix.large);
-      });
-    }
+    scenes.emplace_back([this] {
+      std::vector<std::unique_ptr<Match<2>>> matches;
+      for (const Mix& mix : {Mix{1, 20, 0}, {10, 21, 10}, {30, 22, 4}, {100, 30, 2}}) {
+        if (quick() && mix.ratio > 10) continue;
+        matches.push_back(mixture<2>(disc_tile(), {quick() ? 4 : mix.tiles}, mix.ratio,
+                                     quick() ? std::min(mix.large, 2) : mix.large));
+      }
+      compete_together(matches);
+    });
     if (quick()) return;
-    for (const Mix& mix : {Mix{1, 3, 0}, {10, 3, 3}}) {
-      scenes.emplace_back([this, mix] {
-        mixture<3>(ball_tile(1736, kRadius), {mix.tiles, 3}, mix.ratio, mix.large);
-      });
-    }
+    scenes.emplace_back([this] {
+      std::vector<std::unique_ptr<Match<3>>> matches;
+      for (const Mix& mix : {Mix{1, 3, 0}, {10, 3, 3}}) {
+        matches.push_back(
+            mixture<3>(ball_tile(1736, kRadius), {mix.tiles, 3}, mix.ratio, mix.large));
+      }
+      compete_together(matches);
+    });
   }
 
   /// The settled box, five times as hard, and above its middle a ball of five radii.
@@ -394,19 +416,20 @@ class Harness {
     return bed;
   }
   void add_impacts(std::vector<std::function<void()>>& scenes) {
-    const auto bed = std::make_shared<std::optional<Bed<3>>>();
-    for (const int speed : {0, 1, 10, 50}) {
-      if (quick() && speed == 1) continue;
-      scenes.emplace_back([this, bed, speed] {
-        if (!bed->has_value()) *bed = target();
-        (*bed)->grains.back().velocity = {0, 0, -static_cast<double>(speed)};
-        Plan plan = plan_for((*bed)->count(), 3e6);
-        plan.warm_up = 10;
-        plan.multi = true;
-        compete<3>(kImpactGroup, "a ball of 5 r at " + std::to_string(speed) + " m/s", **bed, plan,
-                   speed);
-      });
-    }
+    scenes.emplace_back([this] {
+      Bed<3> bed = target();
+      Plan plan = plan_for(bed.count(), 3e6);
+      plan.warm_up = 10;
+      plan.multi = true;
+      std::vector<std::unique_ptr<Match<3>>> matches;
+      for (const int speed : {0, 1, 10, 50}) {
+        if (quick() && speed == 1) continue;
+        bed.grains.back().velocity = {0, 0, -static_cast<double>(speed)};
+        matches.push_back(prepare<3>(
+            kImpactGroup, "a ball of 5 r at " + std::to_string(speed) + " m/s", bed, plan, speed));
+      }
+      compete_together(matches);
+    });
   }
 
   void add_moving(std::vector<std::function<void()>>& scenes) {
@@ -432,7 +455,6 @@ class Harness {
     });
   }
 
-  /// One scene: round by round through all sizes, so that their ratio is of one and the same hour.
   void add_growth(std::vector<std::function<void()>>& scenes) {
     scenes.emplace_back([this] {
       std::vector<std::unique_ptr<Match<2>>> matches;
@@ -443,37 +465,27 @@ class Harness {
         plan.oracle = plan.rebuilt = plan.lammps = false;
         matches.push_back(prepare<2>(kGrowthGroup, "discs", bed, plan, bed.count()));
       }
-      for (int round = 0; round < matches.front()->plan.rounds; ++round) {
-        for (const auto& match : matches) play(*match, round);
-      }
-      for (const auto& match : matches) finish(*match);
+      compete_together(matches);
     });
   }
 
   // The competition.
 
-  /// One scene and all who take part.
-  template <int Dim>
-  struct Match {
-    struct Entry {
-      std::string name;
-      std::function<Sample<Dim>(bool careful)> run;  // reads this match, which stays in its place
-      std::vector<std::vector<Phase>> phases;        // by round
-      bool out = false;
-    };
-    Bed<Dim> bed;
-    Plan plan;
-    SceneSpeed scene;
-    std::vector<Entry> entries;
-    Columns<Dim> reference;
-  };
-
   template <int Dim>
   void compete(const std::string& group, const std::string& what, const Bed<Dim>& bed,
                const Plan& plan, double parameter) {
-    const auto match = prepare<Dim>(group, what, bed, plan, parameter);
-    for (int round = 0; round < plan.rounds; ++round) play(*match, round);
-    finish(*match);
+    std::vector<std::unique_ptr<Match<Dim>>> match;
+    match.push_back(prepare<Dim>(group, what, bed, plan, parameter));
+    compete_together(match);
+  }
+
+  /// Round by round through all scenes: what is compared shares the machine's moods.
+  template <int Dim>
+  void compete_together(const std::vector<std::unique_ptr<Match<Dim>>>& matches) {
+    for (int round = 0; round < matches.front()->plan.rounds; ++round) {
+      for (const auto& match : matches) play(*match, round);
+    }
+    for (const auto& match : matches) finish(*match);
   }
 
   template <int Dim>
