@@ -55,6 +55,7 @@ UpdateReport Triangulation<2>::move(std::span<const int> moved, const Columns<2>
     expect_finite(sites(0, id), sites(1, id), weights[id], id);
   }
   report_ = {};
+  edges_.begin_update();
   moved_.clear();
   for (const int id : moved) {
     const Site2 place{sites(0, id), sites(1, id), weights[id]};
@@ -85,6 +86,7 @@ UpdateReport Triangulation<2>::insert(int id, const Vec<2>& position, double wei
                   "cannot insert site " + std::to_string(id) + ", size " + std::to_string(size()));
   expect_finite(position[0], position[1], weight, id);
   report_ = {};
+  edges_.begin_update();
   if (id == size()) {
     if (id == 0) topology_.clear(0);  // the infinite vertex
     sites_.emplace_back();
@@ -107,6 +109,7 @@ UpdateReport Triangulation<2>::insert(int id, const Vec<2>& position, double wei
 UpdateReport Triangulation<2>::remove(int id) {
   LAGRAIN_EXPECTS(contains(id), "site " + std::to_string(id) + " is not present");
   report_ = {};
+  edges_.begin_update();
   --present_;
   if (topology_.corner_of(id) <= -2) {
     topology_.set_corner_of(id, Topology2::kNone);
@@ -133,7 +136,7 @@ UpdateReport Triangulation<2>::remove(int id) {
 
 UpdateReport Triangulation<2>::finish() {
   std::sort(hidden_.begin(), hidden_.end());
-  edges_.settle();
+  edges_.end_update();
 #ifdef LAGRAIN_AUDIT
   if (const auto defects = audit(); !defects.empty()) {
     throw std::logic_error("Triangulation<2>: " + defects.front().sentence);

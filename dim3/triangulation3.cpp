@@ -60,6 +60,7 @@ UpdateReport Triangulation<3>::move(std::span<const int> moved, const Columns<3>
     expect_finite(site_of(sites, weights, id), id);
   }
   report_ = {};
+  edges_.begin_update();
   moved_.clear();
   for (const int id : moved) {
     const Site3 place = site_of(sites, weights, id);
@@ -89,6 +90,7 @@ UpdateReport Triangulation<3>::insert(int id, const Vec<3>& position, double wei
   const Site3 place{position[0], position[1], position[2], weight};
   expect_finite(place, id);
   report_ = {};
+  edges_.begin_update();
   if (id == size_) {
     if (size_ == 0) topology_.clear(3);
     ++size_;
@@ -112,6 +114,7 @@ UpdateReport Triangulation<3>::insert(int id, const Vec<3>& position, double wei
 UpdateReport Triangulation<3>::remove(int id) {
   LAGRAIN_EXPECTS(contains(id), "site " + std::to_string(id) + " is not present");
   report_ = {};
+  edges_.begin_update();
   --present_;
   if (topology_.corner_of(id) <= -2) {
     topology_.set_corner_of(id, Topology3::kNone);
@@ -135,7 +138,7 @@ UpdateReport Triangulation<3>::remove(int id) {
 
 UpdateReport Triangulation<3>::finish() {
   std::sort(hidden_.begin(), hidden_.end());
-  edges_.settle();
+  edges_.end_update();
 #ifdef LAGRAIN_AUDIT
   if (const auto defects = audit(); !defects.empty()) {
     throw std::logic_error("Triangulation<3>: " + defects.front().sentence);

@@ -26,6 +26,10 @@ class AnyNeighbourhood {
                   std::vector<Pair>& pairs) {
     held_->near_pairs(x, radius, margin, pairs);
   }
+  bool pairs_of(std::vector<int>& strays, const PlaceOf<Dim>& place, const Eigen::VectorXd& radius,
+                Eigen::VectorXd& margin, std::vector<Pair>& pairs) {
+    return held_->pairs_of(strays, place, radius, margin, pairs);
+  }
   /// The grains have other numbers from now on.
   void forget() { held_->forget(); }
   /// What the triangulation cost; null for other neighbourhoods.
@@ -39,6 +43,8 @@ class AnyNeighbourhood {
     virtual const char* name() const = 0;
     virtual void near_pairs(const Columns<Dim>&, const Eigen::VectorXd&, Eigen::VectorXd&,
                             std::vector<Pair>&) = 0;
+    virtual bool pairs_of(std::vector<int>&, const PlaceOf<Dim>&, const Eigen::VectorXd&,
+                          Eigen::VectorXd&, std::vector<Pair>&) = 0;
     virtual void forget() = 0;
     virtual const TriangulationCost* cost() const = 0;
     virtual std::int64_t edges() const = 0;
@@ -51,6 +57,14 @@ class AnyNeighbourhood {
     void near_pairs(const Columns<Dim>& x, const Eigen::VectorXd& radius, Eigen::VectorXd& margin,
                     std::vector<Pair>& pairs) override {
       neighbourhood.near_pairs(x, radius, margin, pairs);
+    }
+    bool pairs_of(std::vector<int>& strays, const PlaceOf<Dim>& place,
+                  const Eigen::VectorXd& radius, Eigen::VectorXd& margin,
+                  std::vector<Pair>& pairs) override {
+      if constexpr (AmendableNeighbourhood<N, Dim>) {
+        return neighbourhood.pairs_of(strays, place, radius, margin, pairs);
+      }
+      return false;
     }
     void forget() override {
       if constexpr (requires { neighbourhood.forget(); }) neighbourhood.forget();

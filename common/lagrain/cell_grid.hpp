@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace lagrain {
@@ -25,6 +26,7 @@ class CellGrid {
   void near_pairs(const Columns<Dim>& x, const Eigen::VectorXd& radius, Eigen::VectorXd& margin,
                   std::vector<Pair>& pairs) {
     pairs.clear();
+    strayed_.clear();
     const int n = static_cast<int>(radius.size());
     if (n < 2) return;
     sort_into_cells(x, radius, margin);
@@ -46,6 +48,25 @@ class CellGrid {
     sort_pairs(pairs, n);
   }
 
+  /// Candidates are the members of the cells around a stray, and all that have strayed since the
+  /// cells were filled.
+  bool pairs_of(std::vector<int>& strays, const PlaceOf<Dim>& place, const Eigen::VectorXd& radius,
+                Eigen::VectorXd& margin, std::vector<Pair>& pairs) {
+    pairs.clear();
+    strayed_.insert(strayed_.end(), strays.begin(), strays.end());
+    for (const int i : strays) {
+      if (2 * (radius[i] + margin[i]) > width_) return false;
+      const auto add = [&](int j) {
+        if (j != i) pairs.push_back({std::min(i, j), std::max(i, j)});
+      };
+      for_each_row_around(cell_at(place(i)), [&](int first, int end) {
+        for (int k = first; k < end; ++k) add(members_[static_cast<std::size_t>(k)].i);
+      });
+      for (const int j : strayed_) add(j);
+    }
+    return true;
+  }
+
  private:
   using Index = std::array<int, Dim>;
   static constexpr std::size_t kLast = Dim - 1;
@@ -60,32 +81,27 @@ class CellGrid {
   void sort_into_cells(const Columns<Dim>& x, const Eigen::VectorXd& radius,
                        const Eigen::VectorXd& margin) {
     const int n = static_cast<int>(radius.size());
-    const Vec<Dim> low = x.rowwise().minCoeff();
-    const Vec<Dim> extent = x.rowwise().maxCoeff() - low;
+    low_ = x.rowwise().minCoeff();
+    const Vec<Dim> extent = x.rowwise().maxCoeff() - low_;
     // A slightly wider cell absorbs the rounding of the division below. A grain that flies far away
     // must not cost an empty cell per grain width: at most about four cells per grain.
-    double width = 2 * (radius + margin).maxCoeff() * (1 + 1e-9);
+    width_ = 2 * (radius + margin).maxCoeff() * (1 + 1e-9);
     const auto cells_for = [&](double w) {
       double count = 1;
       for (int d = 0; d < Dim; ++d) count *= std::floor(extent[d] / w) + 1;
       return count;
     };
-    while (cells_for(width) > 4.0 * n + 64) width *= 1.5;
+    while (cells_for(width_) > 4.0 * n + 64) width_ *= 1.5;
     std::size_t count = 1;
     for (int d = 0; d < Dim; ++d) {
-      shape_[static_cast<std::size_t>(d)] = static_cast<int>(extent[d] / width) + 1;
+      shape_[static_cast<std::size_t>(d)] = static_cast<int>(extent[d] / width_) + 1;
       count *= static_cast<std::size_t>(shape_[static_cast<std::size_t>(d)]);
     }
 
     start_.assign(count + 1, 0);
     cell_.resize(static_cast<std::size_t>(n));
     for (int i = 0; i < n; ++i) {
-      Index index;
-      for (int d = 0; d < Dim; ++d) {
-        const auto k = static_cast<std::size_t>(d);
-        index[k] = std::min(static_cast<int>((x(d, i) - low[d]) / width), shape_[k] - 1);
-      }
-      const std::size_t c = flat(index);
+      const std::size_t c = flat(cell_at(x.col(i)));
       cell_[static_cast<std::size_t>(i)] = c;
       ++start_[c + 1];
     }
@@ -96,6 +112,17 @@ class CellGrid {
       const int k = next_[cell_[static_cast<std::size_t>(i)]]++;
       members_[static_cast<std::size_t>(k)] = {x.col(i), radius[i] + margin[i], i};
     }
+  }
+
+  /// The cell that holds a place, or the nearest if none does.
+  Index cell_at(const Vec<Dim>& x) const {
+    Index index;
+    for (int d = 0; d < Dim; ++d) {
+      const auto k = static_cast<std::size_t>(d);
+      index[k] = static_cast<int>(
+          std::clamp((x[d] - low_[d]) / width_, 0.0, static_cast<double>(shape_[k] - 1)));
+    }
+    return index;
   }
 
   std::size_t flat(const Index& index) const {
@@ -135,6 +162,31 @@ class CellGrid {
     }
   }
 
+  /// The rows of the cells around a cell and of itself: f(first, end) of their members.
+  template <class F>
+  void for_each_row_around(const Index& cell, F&& f) const {
+    const auto range = [&](std::size_t d) {
+      return std::pair{std::max(cell[d] - 1, 0), std::min(cell[d] + 1, shape_[d] - 1)};
+    };
+    const auto [from, to] = range(kLast);
+    const auto visit = [&](Index row) {
+      row[kLast] = from;
+      const int first = start_[flat(row)];
+      row[kLast] = to;
+      f(first, start_[flat(row) + 1]);
+    };
+    Index row{};
+    const auto [from0, to0] = range(0);
+    for (row[0] = from0; row[0] <= to0; ++row[0]) {
+      if constexpr (Dim == 3) {
+        const auto [from1, to1] = range(1);
+        for (row[1] = from1; row[1] <= to1; ++row[1]) visit(row);
+      } else {
+        visit(row);
+      }
+    }
+  }
+
   void list_pairs(int k, int first, int end, std::vector<Pair>& pairs) const {
     const Member& a = members_[static_cast<std::size_t>(k)];
     for (int other = first; other < end; ++other) {
@@ -144,13 +196,16 @@ class CellGrid {
     }
   }
 
+  Vec<Dim> low_ = Vec<Dim>::Zero();  ///< corner of the grid [m]
+  double width_ = 0;                 ///< of a cell [m]
   Index shape_{};
   std::vector<std::size_t> cell_;  ///< of each grain
   std::vector<int> start_;         ///< of each cell's members
   std::vector<Member> members_;
   std::vector<int> next_;
+  std::vector<int> strayed_;  ///< no longer where members_ have them
 };
 
-static_assert(Neighbourhood<CellGrid<2>, 2> && Neighbourhood<CellGrid<3>, 3>);
+static_assert(AmendableNeighbourhood<CellGrid<2>, 2> && AmendableNeighbourhood<CellGrid<3>, 3>);
 
 }  // namespace lagrain

@@ -11,21 +11,47 @@
 
 namespace lagrain {
 
-/// Sorted edges. Flips note what they make and what they take away; `settle` brings the list up to
-/// date in one pass that costs little more than a copy. Notes count: an edge may come and go, and
-/// in a triangulation that is turned inside out for a while two edges may join the same sites.
+/// Sorted edges. Flips note what they make and what they take away; when somebody asks for the list
+/// it is brought up to date in one pass that costs little more than a copy. Notes count: an edge
+/// may come and go, and in a triangulation that is turned inside out for a while two edges may join
+/// the same sites.
 ///
 /// Vertices at infinity have negative ids; notes on their edges are ignored. A list that was never
-/// found ignores all notes.
+/// found ignores all notes. To ask is to write: not safe for several threads.
 class EdgeList {
  public:
   using Edge = std::array<int, 2>;  ///< two sites, the lower id first
 
-  std::span<const Edge> all() const { return edges_; }
+  std::span<const Edge> all() const {
+    settle();
+    return edges_;
+  }
+
+  /// To be called before and after the notes of an update.
+  void begin_update() {
+    first_new_ = notes_.size();
+    all_new_ = false;
+  }
+  void end_update() {
+    if (notes_.size() > edges_.size() / 4) settle();
+  }
+  /// Calls f(i, j) for the edges made since begin_update(), maybe more than once, and maybe for
+  /// some that are gone again; for all edges if they were found anew, or asked for, since then.
+  template <class F>
+  void for_each_new(F&& f) const {
+    if (all_new_) {
+      for (const auto& [i, j] : all()) f(i, j);
+      return;
+    }
+    for (std::size_t k = first_new_; k < notes_.size(); ++k) {
+      if ((notes_[k] & 1) == 0) f(edge_of(notes_[k] >> 1)[0], edge_of(notes_[k] >> 1)[1]);
+    }
+  }
 
   /// Forgets everything: the triangulation is being built anew.
   void clear() {
     live_ = false;
+    all_new_ = true;
     notes_.clear();
   }
 
@@ -72,8 +98,13 @@ class EdgeList {
     notes_.erase(kept, notes_.end());
   }
 
-  /// Ends an update.
-  void settle() {
+ private:
+  static Edge edge_of(std::uint64_t key) {
+    return {static_cast<int>(key >> 32), static_cast<int>(key & 0xffffffffU)};
+  }
+
+  void settle() const {
+    all_new_ = true;
     if (notes_.empty()) return;
     std::sort(notes_.begin(), notes_.end());
     next_.clear();
@@ -84,7 +115,7 @@ class EdgeList {
       int count = 0;
       for (; it != notes_.cend() && *it >> 1 == key; ++it) count += (*it & 1) == 0 ? 1 : -1;
       if (count == 0) continue;
-      const Edge edge{static_cast<int>(key >> 32), static_cast<int>(key & 0xffffffffU)};
+      const Edge edge = edge_of(key);
       const auto place = std::lower_bound(old, edges_.cend(), edge);
       next_.insert(next_.end(), old, place);
       old = place;
@@ -99,7 +130,6 @@ class EdgeList {
     notes_.clear();
   }
 
- private:
   /// One number that sorts by edge; the lowest bit tells which kind of note it is.
   void note(int a, int b, unsigned gone) {
     if (!live_ || (a | b) < 0) return;
@@ -108,8 +138,10 @@ class EdgeList {
     notes_.push_back((i << 32 | j) << 1 | gone);
   }
 
-  std::vector<Edge> edges_, next_;
-  std::vector<std::uint64_t> notes_;
+  mutable std::vector<Edge> edges_, next_;
+  mutable std::vector<std::uint64_t> notes_;
+  mutable bool all_new_ = true;
+  std::size_t first_new_ = 0;
   bool live_ = false;
 };
 

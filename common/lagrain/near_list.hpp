@@ -9,21 +9,27 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <utility>
 #include <vector>
 
 namespace lagrain {
 
-/// All pairs within reach at the last refresh. Each grain has a margin m_i: as long as none has
-/// moved further than its margin since the refresh, two grains that touch now were then at a gap of
-/// at most m_i + m_j, so their pair is in the list. The same holds for walls.
+/// All pairs within reach. Each grain has a centre, where it was when it was listed last, and a
+/// margin m_i: as long as none has moved further than its margin from its centre, two grains that
+/// touch have centres at a gap of at most m_i + m_j, so their pair is in the list. The same holds
+/// for walls.
 ///
 /// Displacements are measured in a frame that moves on with the velocity that most grains had at
 /// the refresh: a common drift wears nothing out. A margin follows the grain's speed in that frame,
-/// so that a bed at rest is listed almost without surplus and one fast grain costs only its
-/// surroundings; the two constants of that rule adapt to how long lists last. The choice of margins
-/// never changes a result: pairs that do not touch are skipped, and the order of the others is
-/// fixed by the grains' slots.
+/// so that a bed at rest is listed almost without surplus; the least margin adapts to how many slow
+/// grains leave theirs. The choice of margins never changes a result: pairs that do not touch are
+/// skipped, and the order of the others is fixed by the grains' slots.
+///
+/// A *refresh* centres all grains anew. In between, the list is *amended* where grains leave their
+/// margins: they alone get new centres and margins, and the pairs that they lack. So one fast grain
+/// costs only its surroundings. It does not matter when a centre and a margin were set: the promise
+/// rests on their being such that all pairs within reach are listed.
 ///
 /// Slots are dealt with in blocks of equal size, the same whatever the number of threads. Pairs
 /// within a block belong to it alone; pairs across blocks are listed apart, and each block has a
@@ -34,59 +40,75 @@ class NearList {
   /// One end of a pair across blocks.
   struct End {
     int slot;
-    int pair;     ///< in `across`
-    bool second;  ///< the end j of the pair
+    int partner;       ///< the slot of the other end
+    std::size_t pair;  ///< its rank among the pairs across of all blocks
+    bool second() const { return partner < slot; }  ///< the end j of the pair
+  };
+  /// The slots [first_slot, end_slot) and the pairs of their grains.
+  struct Block {
+    int first_slot = 0;
+    int end_slot = 0;
+    PairTable<Pair, Memory> within;  ///< both grains are in the block
+    PairTable<Pair, Memory> across;  ///< i is in the block, j in a later one
+    PairTable<WallPair, Memory> walls;
+    std::size_t first_across = 0;  ///< rank of its first pair across
+    std::vector<End> ends;         ///< in the block, of pairs across; in the order of the pairs
   };
 
-  PairTable<Pair, Memory> within;  ///< pairs within a block
-  PairTable<Pair, Memory> across;  ///< pairs across blocks
-  PairTable<WallPair, Memory> walls;
+  std::vector<Block>& blocks() { return blocks_; }
+  const std::vector<Block>& blocks() const { return blocks_; }
+  /// Pairs between grains; and those of them across blocks.
+  std::size_t pair_count() const {
+    std::size_t count = across_;
+    for (const Block& block : blocks_) count += block.within.size();
+    return count;
+  }
+  std::size_t across_count() const { return across_; }
 
-  /// Slots in a block, and the number of blocks.
-  int block_size() const { return block_size_; }
-  int blocks() const { return blocks_; }
-  int first_slot(int block) const { return block * block_size_; }
-  int end_slot(int block) const { return std::min(size_, (block + 1) * block_size_); }
-  /// Where a block's entries of a table begin; those of block + 1 follow. In `across` the pairs
-  /// whose i is in the block.
-  std::size_t first_within(int block) const { return first_within_[index(block)]; }
-  std::size_t first_across(int block) const { return first_across_[index(block)]; }
-  std::size_t first_wall(int block) const { return first_wall_[index(block)]; }
-  /// The ends in a block of pairs across, in the order of the pairs.
-  const std::vector<End>& ends(int block) const { return ends_[index(block)]; }
+  /// Whether a refresh would pay although the list holds: it has lived long and hardly any slow
+  /// grain has left its margin, so narrower ones would do.
+  bool worth_narrowing(std::int64_t step) const {
+    return step - last_refresh_ > kLong && floor_ > kLeastFloor && slow_rate(step) < kFew;
+  }
 
   std::int64_t refreshes() const { return refreshes_; }
+  std::int64_t amended() const { return amended_; }  ///< grains centred anew between refreshes
   bool fresh() const { return known_; }
 
   /// Sets the number of grains and the size of blocks; nothing is listed.
   void reset(int size, int block_size) {
     size_ = size;
     block_size_ = block_size;
-    blocks_ = (size + block_size - 1) / block_size;
+    blocks_.assign(index((size + block_size - 1) / block_size), {});
+    int first = 0;
+    for (Block& block : blocks_) {
+      block.first_slot = first;
+      first = block.end_slot = std::min(size, first + block_size);
+    }
+    across_ = 0;
     known_ = false;
   }
 
   /// How far the frame has moved since the last refresh, at time t [s].
   Vec<Dim> shift(double t) const { return (t - time_) * drift_; }
 
-  /// Whether a grain at x, where the frame has moved by `shift`, has kept within its margin since
-  /// the last refresh. NaN has not.
+  /// Whether a grain at x, where the frame has moved by `shift`, is within its margin. NaN is not.
   /// @pre the list is fresh
   bool holds(int slot, const Vec<Dim>& x, const Vec<Dim>& shift) const {
     const Stay& stay = stay_[index(slot)];
     return (x - shift - stay.centre).squaredNorm() <= stay.squared_margin;
   }
 
-  /// The same for all walls.
+  /// The same for all walls, which are centred where they were at the last refresh.
   bool walls_hold(const std::vector<Wall<Dim>>& all_walls, const Vec<Dim>& shift) const {
     for (std::size_t w = 0; w < all_walls.size(); ++w) {
       const double moved = (all_walls[w].point - shift - wall_centre_[w]).norm();
-      if (!(moved <= wall_margin_[w])) return false;
+      if (!(moved <= wall_margin_[w] * kHair)) return false;
     }
     return true;
   }
 
-  /// Lists the pairs near the places x [m], at time t [s] and step `step` of length dt [s].
+  /// Centres all grains at their places x [m], at time t [s] and step `step` of length dt [s].
   /// @param velocity  velocity(slot) [m/s]
   template <Neighbourhood<Dim> N, class Velocity>
   void refresh(const Columns<Dim>& x, const Eigen::VectorXd& radius, Velocity&& velocity,
@@ -96,48 +118,106 @@ class NearList {
     time_ = t;
     drift_ = common_drift<Dim>(size_, velocity);
     margin_.resize(size_);
-    for (int i = 0; i < size_; ++i) {
-      margin_[i] = std::clamp(kHorizon * dt * (velocity(i) - drift_).norm(), floor_ * radius[i],
-                              kCeiling * radius[i]);
-    }
+    for (int i = 0; i < size_; ++i) margin_[i] = wanted_margin(radius[i], velocity(i), dt);
     neighbourhood.near_pairs(x, radius, margin_, fresh_);
     list_pairs();
     list_walls(x, radius, all_walls, dt);
-
-    stay_.resize(static_cast<std::size_t>(size_));
-    for (int i = 0; i < size_; ++i) {
-      // The margins promised are a hair wider than those used: rounding in the tests cannot matter.
-      const double margin = margin_[i] * (1 - 1e-6);
-      stay_[index(i)] = {x.col(i), margin * margin};
-    }
-    for (double& m : wall_margin_) m *= 1 - 1e-6;
+    stay_.resize(index(size_));
+    for (int i = 0; i < size_; ++i) stay(i, x.col(i));
+    paid_ = 0;
     known_ = true;
     ++refreshes_;
+  }
+
+  /// Centres the grains anew that have left their margins, and adds the pairs that they lack. What
+  /// they need no more stays listed until the next refresh.
+  /// @param strays    those grains; others may be added
+  /// @param place     place(slot) [m]
+  /// @param velocity  velocity(slot) [m/s]
+  /// @returns false if a refresh is due: the neighbourhood cannot tell without, or the amendments
+  ///          since the last one have cost as much as it does
+  /// @pre the list is fresh, and the walls hold
+  template <AmendableNeighbourhood<Dim> N, class Place, class Velocity>
+  bool amend(std::vector<int>& strays, Place&& place, Velocity&& velocity,
+             const Eigen::VectorXd& radius, const std::vector<Wall<Dim>>& all_walls,
+             N& neighbourhood, double t, double dt) {
+    const Vec<Dim> shift = this->shift(t);
+    const auto place_here = [&](int i) -> Vec<Dim> { return place(i) - shift; };
+    for (const int i : strays) {
+      if (!place(i).allFinite()) return false;
+      slow_ += margin_[i] <= floor_ * radius[i];
+      margin_[i] = wanted_margin(radius[i], velocity(i), dt);
+    }
+    paid_ += kPriceOfStray * static_cast<std::int64_t>(strays.size());
+    if (paid_ > kPriceOfRefresh * size_ ||
+        !neighbourhood.pairs_of(strays, place_here, radius, margin_, fresh_)) {
+      return false;
+    }
+    for (const int i : strays) stay(i, place_here(i));
+    bool ends_change = false;
+    for (const Pair& pair : fresh_) {
+      const auto [i, j] = pair;
+      if (!within_reach<Dim>(stay_[index(i)].centre, radius[i] + margin_[i], stay_[index(j)].centre,
+                             radius[j] + margin_[j])) {
+        continue;
+      }
+      Block& block = block_of(i);
+      const bool inside = j < block.end_slot;
+      ends_change |= insert(inside ? block.within : block.across, pair) && !inside;
+    }
+    if (ends_change) list_ends();
+    for (const int i : strays) {
+      for (std::size_t w = 0; w < all_walls.size(); ++w) {
+        // In the frame at the last refresh, where the wall was at its centre.
+        const Vec<Dim> x = stay_[index(i)].centre + all_walls[w].point - wall_centre_[w];
+        if (all_walls[w].foot(x).distance > radius[i] + margin_[i] + wall_margin_[w]) continue;
+        insert(block_of(i).walls, {i, static_cast<int>(w)});
+      }
+    }
+    amended_ += static_cast<std::int64_t>(strays.size());
+    return true;
   }
 
   /// The grains have new slots: the memories follow, and the list is no longer fresh.
   /// @param slot  new slot of each old one
   void renumber(const std::vector<int>& slot) {
     std::vector<std::pair<Pair, Memory>> pairs;
-    for (const auto* table : {&within, &across}) {
-      for (std::size_t k = 0; k < table->size(); ++k) {
-        const Pair old = table->pairs()[k];
-        const Pair pair{slot[index(old.i)], slot[index(old.j)]};
-        if (pair.i < pair.j) {
-          pairs.emplace_back(pair, table->memory(k));
-        } else {
-          pairs.emplace_back(Pair{pair.j, pair.i}, table->memory(k).seen_from_partner());
+    std::vector<std::pair<WallPair, Memory>> wall_pairs;
+    for (const Block& block : blocks_) {
+      for (const auto* table : {&block.within, &block.across}) {
+        for (std::size_t k = 0; k < table->size(); ++k) {
+          const Pair old = table->pairs()[k];
+          const Pair pair{slot[index(old.i)], slot[index(old.j)]};
+          if (pair.i < pair.j) {
+            pairs.emplace_back(pair, table->memory(k));
+          } else {
+            pairs.emplace_back(Pair{pair.j, pair.i}, table->memory(k).seen_from_partner());
+          }
         }
       }
+      for (std::size_t k = 0; k < block.walls.size(); ++k) {
+        const WallPair old = block.walls.pairs()[k];
+        wall_pairs.emplace_back(WallPair{slot[index(old.i)], old.wall}, block.walls.memory(k));
+      }
     }
-    set(within, pairs, [&](const Pair& p) { return p.i / block_size_ == p.j / block_size_; });
-    set(across, pairs, [&](const Pair& p) { return p.i / block_size_ != p.j / block_size_; });
-    std::vector<std::pair<WallPair, Memory>> wall_pairs;
-    for (std::size_t k = 0; k < walls.size(); ++k) {
-      const WallPair old = walls.pairs()[k];
-      wall_pairs.emplace_back(WallPair{slot[index(old.i)], old.wall}, walls.memory(k));
+    sort_by_pair(pairs);
+    sort_by_pair(wall_pairs);
+    auto pair = pairs.cbegin();
+    auto wall_pair = wall_pairs.cbegin();
+    for (Block& block : blocks_) {
+      const auto last = std::find_if(
+          pair, pairs.cend(), [&](const auto& entry) { return entry.first.i >= block.end_slot; });
+      const auto inside = [&](const Pair& p) { return p.j < block.end_slot; };
+      assign(block.within, pair, last, inside);
+      assign(block.across, pair, last, std::not_fn(inside));
+      pair = last;
+      const auto last_wall = std::find_if(wall_pair, wall_pairs.cend(), [&](const auto& entry) {
+        return entry.first.i >= block.end_slot;
+      });
+      assign(block.walls, wall_pair, last_wall, [](const WallPair&) { return true; });
+      wall_pair = last_wall;
     }
-    set(walls, wall_pairs, [](const WallPair&) { return true; });
+    list_ends();
     known_ = false;
   }
 
@@ -146,6 +226,14 @@ class NearList {
   static constexpr double kCeiling = 0.3;      // of a radius: wider lists cost more than refreshes
   static constexpr double kLeastFloor = 1e-4;  // of a radius
   static constexpr double kMostFloor = 0.1;
+  /// The margins used are a hair wider than those promised: rounding in the tests cannot matter.
+  static constexpr double kHair = 1 - 1e-6;
+  /// What it costs to centre one grain anew, and in a refresh, each; adding a pair costs half the
+  /// length of the table. In units of about 3 ns.
+  static constexpr std::int64_t kPriceOfStray = 500;
+  static constexpr std::int64_t kPriceOfRefresh = 50;
+  static constexpr std::int64_t kShort = 30, kLong = 60;  // lives of a list, in steps
+  static constexpr double kFew = 2e-5, kMany = 2e-4;      // of all grains that leave in a step
 
   struct Stay {
     Vec<Dim> centre;
@@ -157,69 +245,85 @@ class NearList {
     return static_cast<std::size_t>(i);
   }
 
-  /// Lists that die young ask for wider margins, long-lived ones for narrower.
+  /// Lists that die young, or that many slow grains leave, ask for wider margins; those that live
+  /// long with few amendments for narrower.
   void adapt(std::int64_t step) {
     if (refreshes_ > 0) {
-      const std::int64_t age = step - last_refresh_;
-      if (age < 30) floor_ = std::min(floor_ * 1.25, kMostFloor);
-      if (age > 60) floor_ = std::max(floor_ * 0.4, kLeastFloor);
+      if (step - last_refresh_ < kShort || slow_rate(step) > kMany) {
+        floor_ = std::min(floor_ * 1.25, kMostFloor);
+      } else if (worth_narrowing(step)) {
+        floor_ = std::max(floor_ * 0.4, kLeastFloor);
+      }
     }
+    slow_ = 0;
     last_refresh_ = step;
   }
 
-  /// Takes the entries that fulfil a condition, sorted.
-  template <class P, class Condition>
-  static void set(PairTable<P, Memory>& table, std::vector<std::pair<P, Memory>>& entries,
-                  Condition&& condition) {
+  /// Grains that left margins set by the floor, of all grains, per step.
+  double slow_rate(std::int64_t step) const {
+    return static_cast<double>(slow_) /
+           (static_cast<double>(size_) * static_cast<double>(step - last_refresh_));
+  }
+
+  /// What a grain may move by before it must be centred anew [m].
+  double wanted_margin(double radius, const Vec<Dim>& velocity, double dt) const {
+    return std::clamp(kHorizon * dt * (velocity - drift_).norm(), floor_ * radius,
+                      kCeiling * radius);
+  }
+
+  /// A grain is to stay within its margin around x, in the frame at the last refresh.
+  void stay(int i, const Vec<Dim>& x) {
+    const double margin = margin_[i] * kHair;
+    stay_[index(i)] = {x, margin * margin};
+  }
+
+  template <class P>
+  static void sort_by_pair(std::vector<std::pair<P, Memory>>& entries) {
     std::sort(entries.begin(), entries.end(),
               [](const auto& a, const auto& b) { return a.first < b.first; });
+  }
+
+  /// Fills a table with those of the entries, in order, that fulfil a condition.
+  template <class P, class Entry, class Condition>
+  static void assign(PairTable<P, Memory>& table, Entry first, Entry last, Condition&& condition) {
     std::vector<P> keys;
     std::vector<Memory> memories;
-    for (const auto& [key, memory] : entries) {
-      if (!condition(key)) continue;
-      keys.push_back(key);
-      memories.push_back(memory);
+    for (; first != last; ++first) {
+      if (!condition(first->first)) continue;
+      keys.push_back(first->first);
+      memories.push_back(first->second);
     }
     table.assign(std::move(keys), memories);
   }
 
-  /// Where each block's entries begin in sorted pairs.
-  template <class P>
-  void find_blocks(const std::vector<P>& pairs, std::vector<std::size_t>& first) const {
-    first.resize(index(blocks_) + 1);
-    std::size_t k = 0;
-    for (int b = 0; b <= blocks_; ++b) {
-      while (k < pairs.size() && pairs[k].i < first_slot(b)) ++k;
-      first[index(b)] = k;
-    }
-    first.back() = pairs.size();
-  }
+  Block& block_of(int slot) { return blocks_[index(slot / block_size_)]; }
 
+  /// Puts fresh_ into the blocks' tables.
   void list_pairs() {
-    if (blocks_ <= 1) {
-      within.replace(fresh_);
-      fresh_.clear();
-    } else {
+    auto pair = fresh_.cbegin();
+    for (Block& block : blocks_) {
       fresh_within_.clear();
       fresh_across_.clear();
-      int block = 0;  // of i
-      for (const Pair& pair : fresh_) {
-        while (pair.i >= end_slot(block)) ++block;
-        (pair.j < end_slot(block) ? fresh_within_ : fresh_across_).push_back(pair);
+      for (; pair != fresh_.cend() && pair->i < block.end_slot; ++pair) {
+        (pair->j < block.end_slot ? fresh_within_ : fresh_across_).push_back(*pair);
       }
-      within.replace(fresh_within_);
-      fresh_.clear();
-      fresh_.swap(fresh_across_);
+      block.within.replace(fresh_within_);
+      block.across.replace(fresh_across_);
     }
-    across.replace(fresh_);
-    find_blocks(within.pairs(), first_within_);
-    find_blocks(across.pairs(), first_across_);
-    ends_.resize(index(blocks_));
-    for (auto& list : ends_) list.clear();
-    for (std::size_t k = 0; k < across.size(); ++k) {
-      const auto [i, j] = across.pairs()[k];
-      ends_[index(i / block_size_)].push_back({i, static_cast<int>(k), false});
-      ends_[index(j / block_size_)].push_back({j, static_cast<int>(k), true});
+    list_ends();
+  }
+
+  /// Tells the blocks of their pairs across.
+  void list_ends() {
+    across_ = 0;
+    for (Block& block : blocks_) block.ends.clear();
+    for (Block& block : blocks_) {
+      block.first_across = across_;
+      for (const auto [i, j] : block.across.pairs()) {
+        block.ends.push_back({i, j, across_});
+        block_of(j).ends.push_back({j, i, across_});
+        ++across_;
+      }
     }
   }
 
@@ -244,13 +348,28 @@ class NearList {
           });
     }
     std::sort(fresh_walls_.begin(), fresh_walls_.end());
-    walls.replace(fresh_walls_);
-    find_blocks(walls.pairs(), first_wall_);
+    auto pair = fresh_walls_.cbegin();
+    for (Block& block : blocks_) {
+      block_walls_.clear();
+      for (; pair != fresh_walls_.cend() && pair->i < block.end_slot; ++pair) {
+        block_walls_.push_back(*pair);
+      }
+      block.walls.replace(block_walls_);
+    }
+  }
+
+  /// @returns whether the pair was not listed
+  template <class P>
+  bool insert(PairTable<P, Memory>& table, const P& pair) {
+    if (!table.insert(pair)) return false;
+    paid_ += static_cast<std::int64_t>(table.size() / 2);
+    return true;
   }
 
   int size_ = 0;
   int block_size_ = 1;
-  int blocks_ = 0;
+  std::vector<Block> blocks_;
+  std::size_t across_ = 0;  // pairs across blocks
   bool known_ = false;
   double time_ = 0;                    // of the last refresh [s]
   Vec<Dim> drift_ = Vec<Dim>::Zero();  // velocity of the frame [m/s]
@@ -258,10 +377,11 @@ class NearList {
   std::vector<Stay> stay_;
   std::vector<Vec<Dim>> wall_centre_;
   std::vector<double> wall_margin_;
-  std::vector<std::size_t> first_within_, first_across_, first_wall_;
-  std::vector<std::vector<End>> ends_;
+  std::int64_t paid_ = 0;  // for amendments since the last refresh
+  std::int64_t amended_ = 0;
+  std::int64_t slow_ = 0;  // grains that left margins set by the floor since the last refresh
   std::vector<Pair> fresh_, fresh_within_, fresh_across_;
-  std::vector<WallPair> fresh_walls_;
+  std::vector<WallPair> fresh_walls_, block_walls_;
   double floor_ = 0.01;
   std::int64_t last_refresh_ = 0;
   std::int64_t refreshes_ = 0;

@@ -10,6 +10,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace lagrain {
@@ -80,6 +81,22 @@ concept Neighbourhood = requires(N n, const Columns<Dim>& x, const Eigen::Vector
                                  Eigen::VectorXd& margin, std::vector<Pair>& pairs) {
   n.near_pairs(x, radius, margin, pairs);
   { n.name() } -> std::convertible_to<const char*>;
+};
+
+/// Where a grain is [m].
+template <int Dim>
+using PlaceOf = std::function<Vec<Dim>(int)>;
+
+/// One that can also tell of a few grains, the strays: `pairs_of` lists candidates, in any order,
+/// among them all pairs within reach that have an end in `strays`. Places are in the frame of the
+/// last answer. The strays are centred where they are now, with margins [m] that it may shrink; it
+/// may add others to them, whose margins it had to change. All others are where they were centred
+/// last. False if it cannot tell without `near_pairs`.
+template <class N, int Dim>
+concept AmendableNeighbourhood = Neighbourhood<N, Dim> &&
+    requires(N n, std::vector<int>& strays, const PlaceOf<Dim>& place,
+             const Eigen::VectorXd& radius, Eigen::VectorXd& margin, std::vector<Pair>& pairs) {
+  { n.pairs_of(strays, place, radius, margin, pairs) } -> std::same_as<bool>;
 };
 
 }  // namespace lagrain

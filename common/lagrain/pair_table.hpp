@@ -5,6 +5,8 @@
 #include <lagrain/contact_law.hpp>
 #include <lagrain/neighbourhood.hpp>
 
+#include <algorithm>
+#include <array>
 #include <compare>
 #include <cstddef>
 #include <utility>
@@ -42,15 +44,13 @@ class PairTable {
     }
   }
   /// Number r of all memories, side by side.
-  double* part(int r) { return memory_.data() + static_cast<std::size_t>(r) * pairs_.size(); }
-  const double* part(int r) const {
-    return memory_.data() + static_cast<std::size_t>(r) * pairs_.size();
-  }
+  double* part(int r) { return memory_[static_cast<std::size_t>(r)].data(); }
+  const double* part(int r) const { return memory_[static_cast<std::size_t>(r)].data(); }
 
   /// Puts `fresh` (sorted) in place of the pairs, with these memories.
   void assign(std::vector<P> fresh, const std::vector<Memory>& memories) {
     pairs_ = std::move(fresh);
-    memory_.assign(pairs_.size() * kReals, 0.0);
+    for (auto& row : memory_) row.assign(pairs_.size(), 0.0);
     for (std::size_t k = 0; k < pairs_.size(); ++k) set_memory(k, memories[k]);
   }
 
@@ -58,25 +58,36 @@ class PairTable {
   /// pairs are left in `fresh`.
   void replace(std::vector<P>& fresh) {
     if constexpr (kReals > 0) {
-      fresh_memory_.assign(fresh.size() * kReals, 0.0);
+      for (auto& row : fresh_memory_) row.assign(fresh.size(), 0.0);
       std::size_t old = 0;
       for (std::size_t k = 0; k < fresh.size(); ++k) {
         while (old < pairs_.size() && pairs_[old] < fresh[k]) ++old;
         if (old == pairs_.size()) break;
         if (pairs_[old] != fresh[k]) continue;
-        for (std::size_t r = 0; r < kReals; ++r) {
-          fresh_memory_[r * fresh.size() + k] = memory_[r * pairs_.size() + old];
-        }
+        for (std::size_t r = 0; r < memory_.size(); ++r) fresh_memory_[r][k] = memory_[r][old];
       }
       memory_.swap(fresh_memory_);
     }
     pairs_.swap(fresh);
   }
 
+  /// Adds a pair without a past.
+  /// @returns false if it is there already
+  bool insert(const P& pair) {
+    const auto place = std::lower_bound(pairs_.cbegin(), pairs_.cend(), pair);
+    if (place != pairs_.cend() && *place == pair) return false;
+    const auto k = place - pairs_.cbegin();
+    pairs_.insert(place, pair);
+    for (auto& row : memory_) row.insert(row.begin() + k, 0.0);
+    return true;
+  }
+
  private:
+  using Rows = std::array<std::vector<double>, static_cast<std::size_t>(kReals)>;
+
   std::vector<P> pairs_;
-  std::vector<double> memory_;        // kReals rows of size() numbers
-  std::vector<double> fresh_memory_;  // scratch
+  Rows memory_;        // of each pair a column
+  Rows fresh_memory_;  // scratch
 };
 
 }  // namespace lagrain

@@ -134,17 +134,19 @@ class Simulation {
   std::vector<Pair> near_pairs() const {
     std::vector<Pair> pairs;
     pairs.reserve(near_count());
-    for (const auto* table : {&near_.within, &near_.across}) {
-      for (const auto [a, b] : table->pairs()) {
+    for_each_table([&](const auto& table) {
+      for (const auto [a, b] : table.pairs()) {
         const int i = number(a), j = number(b);
         pairs.push_back({std::min(i, j), std::max(i, j)});
       }
-    }
+    });
     sort_pairs(pairs, count());
     return pairs;
   }
-  std::size_t near_count() const { return near_.within.size() + near_.across.size(); }
+  std::size_t near_count() const { return near_.pair_count(); }
   std::int64_t refreshes() const { return near_.refreshes(); }  ///< of the near list
+  /// Grains that the near list centred anew between refreshes.
+  std::int64_t amended() const { return near_.amended(); }
   /// False when a step that ended with a move has made the list expire: the next forces renew it.
   bool near_list_holds() const {
     const Vec<Dim> shift = near_.shift(time());
@@ -172,30 +174,33 @@ class Simulation {
   template <class F>
   void for_each_contact(F&& f) const {
     const State& g = grains();
-    for (const auto* table : {&near_.within, &near_.across}) {
-      for (std::size_t k = 0; k < table->size(); ++k) {
-        const Pair pair{number(table->pairs()[k].i), number(table->pairs()[k].j)};
+    for_each_table([&](const auto& table) {
+      for (std::size_t k = 0; k < table.size(); ++k) {
+        const Pair pair{number(table.pairs()[k].i), number(table.pairs()[k].j)};
         const auto [touching, touch] = touch_of(body(g, pair.i), body(g, pair.j));
         if (!touching) continue;
-        Memory memory = table->memory(k);
+        Memory memory = table.memory(k);
         f(pair, touch, laws_.of(g.kind, pair.i, pair.j).respond(touch, memory, 0), memory);
       }
-    }
+    });
   }
 
   /// Visits every wall contact: f(wall pair, touch, response, memory).
   template <class F>
   void for_each_wall_contact(F&& f) const {
     const State& g = grains();
-    for (std::size_t k = 0; k < near_.walls.size(); ++k) {
-      const WallPair pair{number(near_.walls.pairs()[k].i), near_.walls.pairs()[k].wall};
-      const Wall<Dim>& wall = walls_[index(pair.wall)];
-      const auto [distance, normal] = wall.foot(g.position.col(pair.i));
-      const auto [touching, touch] =
-          touch_of_wall(body(g, pair.i), g.mass[pair.i], distance, normal, wall.velocity);
-      if (!touching) continue;
-      Memory memory = near_.walls.memory(k);
-      f(pair, touch, laws_.with_wall(g.kind, pair.i, wall.kind).respond(touch, memory, 0), memory);
+    for (const auto& block : near_.blocks()) {
+      for (std::size_t k = 0; k < block.walls.size(); ++k) {
+        const WallPair pair{number(block.walls.pairs()[k].i), block.walls.pairs()[k].wall};
+        const Wall<Dim>& wall = walls_[index(pair.wall)];
+        const auto [distance, normal] = wall.foot(g.position.col(pair.i));
+        const auto [touching, touch] =
+            touch_of_wall(body(g, pair.i), g.mass[pair.i], distance, normal, wall.velocity);
+        if (!touching) continue;
+        Memory memory = block.walls.memory(k);
+        f(pair, touch, laws_.with_wall(g.kind, pair.i, wall.kind).respond(touch, memory, 0),
+          memory);
+      }
     }
   }
 
@@ -204,6 +209,14 @@ class Simulation {
   using Record = GrainRecord<Dim, needs>;
   using Load = LoadRecord<Dim, needs>;
   static constexpr bool kRemembers = Motion::kRemembersAcceleration;
+
+  template <class F>
+  void for_each_table(F&& f) const {
+    for (const auto& block : near_.blocks()) {
+      f(block.within);
+      f(block.across);
+    }
+  }
 
   /// What the integrator remembers of a grain.
   struct Accelerations {
@@ -326,12 +339,13 @@ class Simulation {
   /// team of one takes a microsecond to call together.
   template <class F>
   void for_each_block(F&& f) {
+    const std::size_t blocks = near_.blocks().size();
     if (setting_.threads == 1) {
-      for (int block = 0; block < near_.blocks(); ++block) f(block);
+      for (std::size_t block = 0; block < blocks; ++block) f(block);
       return;
     }
 #pragma omp parallel for schedule(static) num_threads(setting_.threads)
-    for (int block = 0; block < near_.blocks(); ++block) f(block);
+    for (std::size_t block = 0; block < blocks; ++block) f(block);
   }
 
   // ---- Motion ----------------------------------------------------------------------------------
@@ -387,20 +401,19 @@ class Simulation {
   void advance(int evaluation, double t) {
     const auto start = measuring_ ? Clock::now() : Clock::time_point{};
     const Vec<Dim> shift = near_.shift(t);
-    bool holds = near_.fresh() && near_.walls_hold(walls_, shift);
-    block_holds_.assign(index(near_.blocks()), holds);
+    const bool listed = near_.fresh() && near_.walls_hold(walls_, shift);
+    strays_.resize(near_.blocks().size());
     const auto pass = [&]<bool kFinish>() {
-      for_each_block([&](int block) {
-        const int end = near_.end_slot(block);
-        bool inside = holds;
-        for (int slot = near_.first_slot(block); slot < end; ++slot) {
+      for_each_block([&](std::size_t block) {
+        const int end = near_.blocks()[block].end_slot;
+        strays_[block].clear();
+        for (int slot = near_.blocks()[block].first_slot; slot < end; ++slot) {
           Moving grain(*this, slot);
           if constexpr (kFinish) grain.finish(setting_.time_step);
           grain.advance(evaluation, setting_.time_step);
           grain.store(*this, slot);
-          if (holds) inside &= near_.holds(slot, grain.x, shift);
+          if (listed && !near_.holds(slot, grain.x, shift)) strays_[block].push_back(slot);
         }
-        block_holds_[index(block)] = inside;
       });
     };
     if (unfinished_) {
@@ -409,34 +422,35 @@ class Simulation {
       pass.template operator()<false>();
     }
     unfinished_ = false;
-    for (const char inside : block_holds_) holds = holds && inside;
-    near_holds_ = holds;
+    near_holds_ = listed && std::all_of(strays_.begin(), strays_.end(),
+                                        [](const auto& list) { return list.empty(); });
     if (measuring_) times_.integration += seconds(Clock::now() - start);
   }
 
   // ---- Forces ----------------------------------------------------------------------------------
 
   void evaluate_forces(double t) {
-    if (!near_holds_) refresh(t);
+    if (!near_holds_ || worth_narrowing()) refresh(t);
     const ContactScene<Dim, Law> scene{
         records_.data(), loads_.data(),           &kinds_, &laws_, walls_.data(),
         force_step_,     setting_.largest_overlap};
-    const int blocks = near_.blocks();
-    parts_.resize(index(blocks));
+    const std::size_t blocks = near_.blocks().size();
+    parts_.resize(blocks);
     for (Part& part : parts_) part.pair_seconds = part.wall_seconds = 0;
-    kept_.resize(near_.across.size());
-    wall_parts_.assign(index(blocks) * walls_.size(), Vec<Dim>::Zero());
+    kept_.resize(near_.across_count());
+    wall_parts_.assign(blocks * walls_.size(), Vec<Dim>::Zero());
     if (blocks > 1) {
-      for_each_block([&](int block) {
-        Part& part = parts_[index(block)];
+      for_each_block([&](std::size_t b) {
+        auto& block = near_.blocks()[b];
+        Part& part = parts_[b];
         const auto start = measuring_ ? Clock::now() : Clock::time_point{};
-        const std::size_t first = near_.first_across(block), end = near_.first_across(block + 1);
-        part.across = kernel_.pairs(scene, near_.across, first, end,
-                                    listing_for(end - first, part.across.contacts), kept_.data());
+        part.across = kernel_.pairs(scene, block.across, 0, block.across.size(),
+                                    listing_for(block.across.size(), part.across.contacts),
+                                    kept_.data() + block.first_across);
         if (measuring_) part.pair_seconds += seconds(Clock::now() - start);
       });
     }
-    for_each_block([&](int block) { block_forces(scene, block); });
+    for_each_block([&](std::size_t block) { block_forces(scene, block); });
 
     Tally total;
     for (const Part& part : parts_) total += part.across;
@@ -450,8 +464,8 @@ class Simulation {
     flow_.friction += total.friction;
     for (std::size_t w = 0; w < walls_.size(); ++w) {
       walls_[w].force.setZero();
-      for (int block = 0; block < blocks; ++block) {
-        walls_[w].force += wall_parts_[index(block) * walls_.size() + w];
+      for (std::size_t block = 0; block < blocks; ++block) {
+        walls_[w].force += wall_parts_[block * walls_.size() + w];
       }
       flow_.wall_work -= walls_[w].force.dot(walls_[w].velocity) * force_step_;
     }
@@ -459,29 +473,28 @@ class Simulation {
   }
 
   /// All that adds to the loads of a block's grains, in a fixed order.
-  void block_forces(const ContactScene<Dim, Law>& scene, int block) {
-    Part& part = parts_[index(block)];
+  void block_forces(const ContactScene<Dim, Law>& scene, std::size_t b) {
+    auto& block = near_.blocks()[b];
+    Part& part = parts_[b];
     const auto start = measuring_ ? Clock::now() : Clock::time_point{};
-    for (int slot = near_.first_slot(block); slot < near_.end_slot(block); ++slot) {
+    for (int slot = block.first_slot; slot < block.end_slot; ++slot) {
       weigh(loads_[index(slot)]);
       fetch_ahead(records_[index(slot)]);
     }
-    const std::size_t first = near_.first_within(block), last = near_.first_within(block + 1);
-    part.within = kernel_.pairs(scene, near_.within, first, last,
-                                listing_for(last - first, part.within.contacts));
-    for (const auto& end : near_.ends(block)) {
-      const PairLoad<Dim, needs>& both = kept_[index(end.pair)];
+    part.within = kernel_.pairs(scene, block.within, 0, block.within.size(),
+                                listing_for(block.within.size(), part.within.contacts));
+    for (const auto& end : block.ends) {
+      const PairLoad<Dim, needs>& both = kept_[end.pair];
       Load& load = loads_[index(end.slot)];
-      if (end.second) {
+      if (end.second()) {
         both.give_to_j(load);
       } else {
         both.give_to_i(load);
       }
     }
     const auto between = measuring_ ? Clock::now() : Clock::time_point{};
-    part.walls =
-        kernel_.walls(scene, near_.walls, near_.first_wall(block), near_.first_wall(block + 1),
-                      wall_parts_.data() + index(block) * walls_.size());
+    part.walls = kernel_.walls(scene, block.walls, 0, block.walls.size(),
+                               wall_parts_.data() + b * walls_.size());
     if (!measuring_) return;
     part.pair_seconds += seconds(between - start);
     part.wall_seconds += seconds(Clock::now() - between);
@@ -489,12 +502,35 @@ class Simulation {
 
   void refresh(double t) {
     const auto start = Clock::now();
-    check_finite();
-    near_.refresh(
-        places(), radius_, [&](int slot) { return records_[index(slot)].velocity(); }, walls_,
-        neighbourhood_, t, setting_.time_step, steps_);
+    const auto velocity = [&](int slot) { return records_[index(slot)].velocity(); };
+    if (worth_narrowing() || !amend(t, velocity)) {
+      check_finite();
+      near_.refresh(places(), radius_, velocity, walls_, neighbourhood_, t, setting_.time_step,
+                    steps_);
+    }
     near_holds_ = true;
     times_.refresh += seconds(Clock::now() - start);
+  }
+
+  /// Where lists are not amended, one that holds is too dear to give away.
+  bool worth_narrowing() const {
+    return AmendableNeighbourhood<N, Dim> && near_.worth_narrowing(steps_);
+  }
+
+  /// Brings the near list up to date without a refresh, if that will do.
+  template <class Velocity>
+  bool amend(double t, Velocity&& velocity) {
+    if constexpr (AmendableNeighbourhood<N, Dim>) {
+      if (!near_.fresh() || !near_.walls_hold(walls_, near_.shift(t))) return false;
+      all_strays_.clear();
+      for (const auto& list : strays_) {
+        all_strays_.insert(all_strays_.end(), list.begin(), list.end());
+      }
+      return near_.amend(
+          all_strays_, [&](int slot) { return records_[index(slot)].position(); }, velocity,
+          radius_, walls_, neighbourhood_, t, setting_.time_step);
+    }
+    return false;
   }
 
   [[noreturn]] void report_deep_overlap(double t) {
@@ -592,7 +628,8 @@ class Simulation {
   PhaseTimes times_;
   bool measuring_ = false;
 
-  std::vector<char> block_holds_;  ///< whether no grain of the block has left its margin
+  std::vector<std::vector<int>> strays_;  // grains of each block that have left their margins
+  std::vector<int> all_strays_;
   std::vector<Part> parts_;
   std::vector<PairLoad<Dim, needs>> kept_;
   std::vector<Vec<Dim>> wall_parts_;  // forces on the walls, by block

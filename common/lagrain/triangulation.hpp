@@ -49,6 +49,9 @@ concept RegularTriangulation = requires(T t, const T ct, std::span<const int> mo
   t.build(sites, weights);
   { t.move(moved, sites, weights) } -> std::same_as<UpdateReport>;
   ct.for_each_edge(visit);
+  ct.for_each_neighbour(int{}, [](int) {});
+  // Those of the last update.
+  ct.for_each_new_edge(visit);
   // Sorted.
   { ct.edges() } -> std::same_as<std::span<const EdgeList::Edge>>;
   { ct.hidden() } -> std::convertible_to<std::span<const int>>;

@@ -73,25 +73,15 @@ class TriangulationNeighbourhood {
   /// @pre x is finite
   void near_pairs(const Columns<Dim>& x, const Eigen::VectorXd& radius, Eigen::VectorXd& margin,
                   std::vector<Pair>& pairs) {
+    const auto place = [&](int i) -> Vec<Dim> { return x.col(i); };
     if (reference_.cols() != x.cols()) {
       build(x, radius);
-      for (int i = 0; i < size(); ++i) margin[i] = std::min(margin[i], room(x, i));
+      for (int i = 0; i < size(); ++i) margin[i] = std::min(margin[i], room(i, x.col(i)));
     } else if (laziness_.follow) {
       // T does not change when everything moves together: displacements count against the drift.
       drift_ = common_drift<Dim>(size(), [&](int i) { return x.col(i) - reference_.col(i); });
-      for (int i = 0; i < size(); ++i) {
-        const double left = room(x, i);
-        margin[i] = std::min(margin[i], 0.5 * skin_[i]);
-        if (!(left >= margin[i])) join(i);
-      }
-      if (!moved_.empty()) {
-        ++cost_.updates;
-        placed_.clear();
-        place(x, radius, margin);
-        move_references();
-        certify(x, radius);
-        for (const int i : placed_) margin[i] = std::min(margin[i], room(x, i));
-      }
+      for (int i = 0; i < size(); ++i) see_to(i, x.col(i), margin);
+      update(place, radius, margin);
     } else {
       for (int i = 0; i < size(); ++i) margin[i] = std::min(margin[i], 0.5 * skin_[i]);
     }
@@ -100,10 +90,26 @@ class TriangulationNeighbourhood {
     if (!uncertain_.empty()) search_around_uncertain(x, radius, margin, pairs);
   }
 
+  /// Also adds to the strays the grains that got new references; `pairs` are edges of T.
+  bool pairs_of(std::vector<int>& strays, const PlaceOf<Dim>& place, const Eigen::VectorXd& radius,
+                Eigen::VectorXd& margin, std::vector<Pair>& pairs) {
+    if (!laziness_.follow || !uncertain_.empty()) return false;
+    for (const int i : strays) see_to(i, place(i), margin);
+    update(place, radius, margin);
+    if (!uncertain_.empty()) return false;
+    strays.insert(strays.end(), placed_.begin(), placed_.end());
+    sort_unique(strays);
+    pairs.clear();
+    for (const int i : strays) {
+      t_.for_each_neighbour(i, [&](int j) { pairs.push_back({std::min(i, j), std::max(i, j)}); });
+    }
+    return true;
+  }
+
  private:
   /// Where a grain stands in an update: not concerned, in moved_ without a new reference, with one.
   enum class State : unsigned char { at_rest, waiting, placed };
-  /// What a new reference must keep from a neighbour's: see place_one.
+  /// What a new reference must keep from a neighbour's: see renew_one.
   struct Bound {
     double slack;    // squared distance less both weights, without a skin here [m^2]
     double forward;  // the way towards the neighbour's far side, along the motion [m]
@@ -126,15 +132,37 @@ class TriangulationNeighbourhood {
     moved_.clear();
     placed_.clear();
     for (int i = 0; i < size(); ++i) join(i);
-    place(x, radius, Eigen::VectorXd::Constant(size(), std::numeric_limits<double>::infinity()));
+    const auto place = [&](int i) -> Vec<Dim> { return x.col(i); };
+    renew(place, radius,
+          Eigen::VectorXd::Constant(size(), std::numeric_limits<double>::infinity()));
     t_.build(reference_, weight_);
     placed_.swap(moved_);
-    certify(x, radius);
+    certify(place, radius);
+  }
+
+  /// Asks for no more margin than half a skin; a grain whose skin has no room for that joins
+  /// moved_.
+  void see_to(int i, const Vec<Dim>& x, Eigen::VectorXd& margin) {
+    margin[i] = std::min(margin[i], 0.5 * skin_[i]);
+    if (!(room(i, x) >= margin[i])) join(i);
+  }
+
+  /// Brings T up to date with the grains in moved_, and leaves all that have new references in
+  /// placed_, with margins that these allow.
+  template <class Place>
+  void update(Place&& place, const Eigen::VectorXd& radius, Eigen::VectorXd& margin) {
+    placed_.clear();
+    if (moved_.empty()) return;
+    ++cost_.updates;
+    renew(place, radius, margin);
+    move_references();
+    certify(place, radius);
+    for (const int i : placed_) margin[i] = std::min(margin[i], room(i, place(i)));
   }
 
   /// How far i may move before it leaves its skin; negative if it has, or is not a number.
-  double room(const Columns<Dim>& x, int i) const {
-    return skin_[i] * (1 - 1e-6) - (x.col(i) - drift_ - reference_.col(i)).norm();
+  double room(int i, const Vec<Dim>& x) const {
+    return skin_[i] * (1 - 1e-6) - (x - drift_ - reference_.col(i)).norm();
   }
 
   void join(int i) {
@@ -149,17 +177,19 @@ class TriangulationNeighbourhood {
 
   /// Gives the grains in moved_ new references and skins. Neighbours whose own skins leave too
   /// little join moved_.
-  void place(const Columns<Dim>& x, const Eigen::VectorXd& radius, const Eigen::VectorXd& margin) {
+  template <class Place>
+  void renew(Place&& place, const Eigen::VectorXd& radius, const Eigen::VectorXd& margin) {
     for (std::size_t k = 0; k < moved_.size(); ++k) {
-      place_one(x, radius, moved_[k], margin[moved_[k]]);
+      renew_one(place, radius, moved_[k], margin[moved_[k]]);
     }
   }
 
   /// The skin is the largest that the certificate allows against the neighbours in T as it stands,
   /// at their references, and that is fair to them at their present places. T will change: that the
   /// new edges pass too is only likely here, and seen to by certify().
-  void place_one(const Columns<Dim>& x, const Eigen::VectorXd& radius, int i, double margin) {
-    const Vec<Dim> here = x.col(i) - drift_;
+  template <class Place>
+  void renew_one(Place&& place, const Eigen::VectorXd& radius, int i, double margin) {
+    const Vec<Dim> here = place(i) - drift_;
     const double r = radius[i];
     Vec<Dim> ahead = here - reference_.col(i);
     const double way = ahead.norm();
@@ -172,7 +202,7 @@ class TriangulationNeighbourhood {
     t_.for_each_neighbour(i, [&](int j) {
       smallest = std::min(smallest, radius[j]);
       const double share =
-          laziness_.skin * fair_skin(r, radius[j], (x.col(j) - drift_ - here).squaredNorm());
+          laziness_.skin * fair_skin(r, radius[j], (place(j) - drift_ - here).squaredNorm());
       fair = std::min(fair, share);
       if (state(j) == State::waiting) return;
       const Vec<Dim> away = here - reference_.col(j);
@@ -235,22 +265,38 @@ class TriangulationNeighbourhood {
     moved_.clear();
   }
 
-  /// Looks for edges whose inflated spheres meet at a right angle or more, and brings their ends up
-  /// to date with skins that pass between grains of hardly any overlap. Ends of edges that fail
-  /// again and again are uncertain.
+  /// Whether the inflated spheres of an edge meet at less than a right angle.
+  bool passes(int a, int b) const {
+    const double squared = (reference_.col(a) - reference_.col(b)).squaredNorm();
+    // One part in 10^12 covers the rounding of both sides.
+    return squared > (weight_[a] + weight_[b]) * (1 + 1e-12);
+  }
+
+  /// Looks for edges that fail the certificate, and brings their ends up to date with skins that
+  /// pass between grains of hardly any overlap. Ends of edges that fail again and again are
+  /// uncertain.
   /// @param placed_  all grains with a new reference in this update; back at rest then
-  void certify(const Columns<Dim>& x, const Eigen::VectorXd& radius) {
+  template <class Place>
+  void certify(Place&& place, const Eigen::VectorXd& radius) {
+    // All edges passed before this update, unless some grains are uncertain: then, and if many
+    // moved, look at all of them.
+    const bool all = !uncertain_.empty() || placed_.size() > static_cast<std::size_t>(size()) / 16;
     uncertain_.clear();
     if (laziness_.certify) {
       for (int round = 0;; ++round) {
         failed_.clear();
-        for (const auto& [a, b] : t_.edges()) {
-          const double squared = (reference_.col(a) - reference_.col(b)).squaredNorm();
-          // One part in 10^12 covers the rounding of both sides.
-          if (!(squared > (weight_[a] + weight_[b]) * (1 + 1e-12))) {
-            failed_.push_back(a);
-            failed_.push_back(b);
+        const auto look = [&](int a, int b) {
+          if (passes(a, b)) return;
+          failed_.push_back(a);
+          failed_.push_back(b);
+        };
+        if (all || round > 0) {
+          for (const auto& [a, b] : t_.edges()) look(a, b);
+        } else {
+          for (const int i : placed_) {
+            t_.for_each_neighbour(i, [&](int j) { look(i, j); });
           }
+          t_.for_each_new_edge(look);
         }
         sort_unique(failed_);
         if (failed_.empty()) break;
@@ -263,7 +309,7 @@ class TriangulationNeighbourhood {
           double smallest = radius[i];
           t_.for_each_neighbour(i, [&](int j) { smallest = std::min(smallest, radius[j]); });
           const double skin = kSmallSkin * smallest;
-          reference_.col(i) = x.col(i) - drift_ + skin * aside_.col(i);
+          reference_.col(i) = place(i) - drift_ + skin * aside_.col(i);
           set_skin(radius, i, skin);
         }
         moved_ = failed_;

@@ -105,6 +105,13 @@ class Triangulation<2> {
     for (const auto& [i, j] : edges()) f(i, j);
   }
 
+  /// Calls f(i, j), i < j, for each edge that the last update made: maybe more than once, and maybe
+  /// for edges that it took away again; for all edges if there is no telling.
+  template <class F>
+  void for_each_new_edge(F&& f) const {
+    edges_.for_each_new(f);
+  }
+
   /// Calls f(a, b, c) for each finite triangle, counter-clockwise.
   template <class F>
   void for_each_triangle(F&& f) const {

@@ -68,6 +68,43 @@ TEST_SUITE("near_list") {
     for (std::size_t k = 0; k < expected.size(); ++k) CHECK(table.memory(k) == expected[k]);
   }
 
+  TEST_CASE("a pair that comes between others brings no memory and leaves theirs alone") {
+    using Memory = FrictionalSpring::Memory<2>;
+    const auto m = [](double s) { return Memory{{s, -s}}; };
+    PairTable<Pair, Memory> table;
+    table.assign({{0, 1}, {1, 2}}, {m(1), m(2)});
+
+    CHECK(table.insert({0, 3}));
+    CHECK(table.insert({0, 0}));
+    CHECK(table.insert({2, 3}));
+    CHECK_FALSE(table.insert({0, 3}));
+
+    CHECK(table.pairs() == std::vector<Pair>{{0, 0}, {0, 1}, {0, 3}, {1, 2}, {2, 3}});
+    const std::vector<Memory> expected{m(0), m(1), m(0), m(2), m(0)};
+    for (std::size_t k = 0; k < expected.size(); ++k) CHECK(table.memory(k) == expected[k]);
+  }
+
+  TEST_CASE_TEMPLATE("a few grains in motion among many at rest are listed anew alone", C,
+                     Case<2, FrictionalSpring>, Case<3, FrictionalSpring>) {
+    // A row of grains at rest under a roof, and one that comes from below and hits a second.
+    constexpr int Dim = C::Dim;
+    std::vector<Vec<Dim>> places;
+    for (int k = 0; k < 400; ++k) places.push_back(3.0 * k * along<Dim>());
+    places.push_back(-2.01 * up<Dim>() + 3.0 * along<Dim>());
+    auto grains = equal_grains<Dim>(places);
+    grains.back().velocity = 20 * up<Dim>() + 20 * along<Dim>();
+    MotionScene<Dim> scene{"alarm", grains, {}};
+    scene.walls.push_back(Wall<Dim>::half_space("roof", 8 * up<Dim>(), -up<Dim>()));
+    auto sim = start<Dim>(scene, make_law<FrictionalSpring>(kGravel), CellGrid<Dim>{});
+
+    const AuditResult result = audited<Dim>(sim, 2000);
+
+    CHECK(result.contacts > 10);
+    CHECK(result.missed == 0);
+    CHECK(sim.amended() > 10);
+    CHECK(sim.refreshes() < sim.amended());
+  }
+
   TEST_CASE_TEMPLATE("a common drift wears no list out", C, Case<2, LinearSpring>,
                      Case<3, LinearSpring>) {
     const auto refreshes = [](MotionScene<C::Dim> scene) {

@@ -7,7 +7,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 using namespace lagrain;
@@ -559,6 +561,33 @@ TEST_SUITE("triangulation3: the interface") {
       std::vector<Edge> twice;
       for (const Edge& edge : test::edges(t)) twice.insert(twice.end(), 2, edge);
       CHECK(seen == twice);
+    }
+  }
+
+  TEST_CASE("an update tells which edges it made") {
+    Random random(3);
+    for (auto s : test3::all_kinds(random)) {
+      CAPTURE(s.name);
+      auto t = test::built(s);
+      for (const double distance : {0.05, 1.0}) {
+        for (const double fraction : {0.0, 0.05, 1.0}) {
+          auto ids = test::some_ids(random, s.size(), fraction);
+          if (ids.empty()) ids = {random.below(s.size())};
+          s = test::displaced(s, ids, distance * s.r, random);
+          const auto before = test::edges(t);
+
+          t.move(ids, s.x, s.w);
+
+          std::vector<Edge> told;
+          t.for_each_new_edge([&](int i, int j) { told.emplace_back(i, j); });
+          std::sort(told.begin(), told.end());
+          const auto after = test::edges(t);
+          std::vector<Edge> made;
+          std::set_difference(after.begin(), after.end(), before.begin(), before.end(),
+                              std::back_inserter(made));
+          CHECK(std::includes(told.begin(), told.end(), made.begin(), made.end()));
+        }
+      }
     }
   }
 

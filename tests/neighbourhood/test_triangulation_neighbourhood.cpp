@@ -88,6 +88,7 @@ TEST_SUITE("triangulation_neighbourhood") {
 
         CHECK(result.contacts > 0);
         CHECK(result.missed == 0);
+        CHECK(sim.amended() > 0);
         CHECK(sim.neighbourhood().cost().moved > 0);
         CHECK(sim.neighbourhood().cost().ladder.rebuilds == 0);
       }

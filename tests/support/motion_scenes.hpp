@@ -84,6 +84,47 @@ void jostle(Cloud<Dim>& cloud, Random& random) {
   }
 }
 
+/// A few grains of the cloud stray; what the neighbourhood then tells of them is what brute force
+/// finds.
+/// @param centre, margin  of its last answer
+template <int Dim, AmendableNeighbourhood<Dim> N>
+void check_amendment(N& neighbourhood, Cloud<Dim>& cloud, Columns<Dim> centre,
+                     Eigen::VectorXd margin, Random& random) {
+  std::vector<int> strays;
+  for (int i = 0; i < cloud.radius.size(); ++i) {
+    if (random.uniform() > 0.1) continue;
+    strays.push_back(i);
+    for (int d = 0; d < Dim; ++d) cloud.x(d, i) += 3 * margin[i] * random.normal();
+    margin[i] = cloud.radius[i] * random.uniform(0, 0.1);
+  }
+  const Eigen::VectorXd asked = margin;
+  const PlaceOf<Dim> place = [&](int i) -> Vec<Dim> { return cloud.x.col(i); };
+  std::vector<Pair> candidates;
+  if (!neighbourhood.pairs_of(strays, place, cloud.radius, margin, candidates)) return;
+
+  CHECK((margin.array() <= asked.array()).all());
+  std::vector<char> astray(static_cast<std::size_t>(margin.size()), false);
+  for (const int i : strays) {
+    astray[static_cast<std::size_t>(i)] = true;
+    centre.col(i) = cloud.x.col(i);
+  }
+  const auto of_a_stray = [&](const Pair& pair) {
+    return astray[static_cast<std::size_t>(pair.i)] || astray[static_cast<std::size_t>(pair.j)];
+  };
+  for (int i = 0; i < margin.size(); ++i) {
+    if (!astray[static_cast<std::size_t>(i)]) CHECK(margin[i] == asked[i]);
+  }
+  std::vector<Pair> expected;
+  AllPairs<Dim>{}.near_pairs(centre, cloud.radius, margin, expected);
+  std::erase_if(expected, [&](const Pair& pair) { return !of_a_stray(pair); });
+  std::erase_if(candidates, [&](const Pair& pair) {
+    return !of_a_stray(pair) || !within_reach<Dim>(centre, cloud.radius, margin, pair.i, pair.j);
+  });
+  std::sort(candidates.begin(), candidates.end());
+  candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
+  REQUIRE(candidates == expected);
+}
+
 /// The lists of a neighbourhood, over a walk of the cloud, are those of brute force.
 template <int Dim, class N>
 void check_lists(CloudKind kind, std::uint64_t seed, int count, int rounds) {
@@ -104,6 +145,9 @@ void check_lists(CloudKind kind, std::uint64_t seed, int count, int rounds) {
     CHECK((margin.array() <= asked.array()).all());
     AllPairs<Dim>{}.near_pairs(cloud.x, cloud.radius, margin, expected);
     REQUIRE(found == expected);
+    if constexpr (AmendableNeighbourhood<N, Dim>) {
+      check_amendment<Dim>(neighbourhood, cloud, cloud.x, margin, random);
+    }
     jostle(cloud, random);
   }
 }
