@@ -200,6 +200,8 @@ std::vector<std::pair<std::string, std::string>> facts(const Run<Dim>& run) {
     fact("triangulation updates", std::to_string(cost->updates) + ", " +
                                       std::to_string(cost->moved) + " grains moved, " +
                                       std::to_string(cost->ladder.flips) + " flips");
+    fact("leaps", std::to_string(cost->leaps) + " builds with wide skins, left by " +
+                      std::to_string(cost->walks) + " grains");
     fact("repairs", std::to_string(cost->ladder.extracted) + " grains taken out, " +
                         std::to_string(cost->ladder.unstuck) +
                         (Dim == 2 ? " more where flips stuck, " : " cavities filled anew, ") +

@@ -308,7 +308,7 @@ std::vector<RunCost> measure_runs(bool quick, const Checkpoint& checkpoint) {
   }
   std::vector<std::unique_ptr<Run<Dim>>> runs;
   for (const RunCost& cost : costs) {
-    TriangulationNeighbourhood<Dim> neighbourhood(Laziness{.skin = cost.skin});
+    TriangulationNeighbourhood<Dim> neighbourhood(Laziness{.skin = cost.skin, .leap = false});
     runs.push_back(make_run(shaken_grains<Dim>(quick, cost.fraction),
                             AnyNeighbourhood<Dim>(std::move(neighbourhood))));
     runs.back()->use_threads(1);

@@ -307,6 +307,8 @@ std::vector<Fact> packing_facts(const std::vector<Packing>& packings) {
     cost.updates += p.cost.updates;
     cost.moved += p.cost.moved;
     cost.searched += p.cost.searched;
+    cost.leaps += p.cost.leaps;
+    cost.walks += p.cost.walks;
   }
   return {{"runs", std::to_string(packings.size()) + ", " + std::to_string(steps) + " steps"},
           {"time", rounded(seconds) + " s of one core, " +
@@ -321,6 +323,8 @@ std::vector<Fact> packing_facts(const std::vector<Packing>& packings) {
           {"triangulation updates", std::to_string(cost.updates) + ", " +
                                         std::to_string(cost.moved) + " grains moved, " +
                                         std::to_string(cost.ladder.flips) + " flips"},
+          {"leaps", std::to_string(cost.leaps) + " builds with wide skins, left by " +
+                        std::to_string(cost.walks) + " grains"},
           {"repairs", std::to_string(cost.ladder.extracted) + " grains taken out, " +
                           std::to_string(cost.ladder.unstuck) + " cavities filled anew, " +
                           std::to_string(cost.ladder.rebuilds) + " rebuilds, " +

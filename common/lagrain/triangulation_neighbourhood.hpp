@@ -6,6 +6,7 @@
 #include <lagrain/check.hpp>
 #include <lagrain/neighbourhood.hpp>
 #include <lagrain/random.hpp>
+#include <lagrain/reach_list.hpp>
 #include <lagrain/triangulation.hpp>
 
 #include <algorithm>
@@ -27,6 +28,7 @@ struct Laziness {
   double skin = 1.3;
   bool certify = true;  ///< test the certificate after every update
   bool follow = true;   ///< false: T is built once and never moved
+  bool leap = true;     ///< where most grains move, or some very far, build T anew with wide skins
 };
 
 /// What the triangulation has cost so far.
@@ -36,6 +38,8 @@ struct TriangulationCost {
   UpdateReport ladder;        ///< what the updates had to do
   std::int64_t shrunk = 0;    ///< grains given a small skin because an edge failed the certificate
   std::int64_t searched = 0;  ///< range searches around grains that still failed, or are hidden
+  std::int64_t leaps = 0;     ///< builds with wide skins
+  std::int64_t walks = 0;     ///< grains that left wide skins
 };
 
 /// Contacts along the edges of a lazy regular triangulation, after Ferrez & Liebling (2000).
@@ -55,6 +59,13 @@ struct TriangulationCost {
 /// Where an edge fails the certificate (deep overlap, a tiny grain come close to a large one) both
 /// ends are brought up to date with small skins. What still fails, and what is hidden, is searched
 /// by brute force: then too every pair is found, and `cost().searched` says so.
+///
+/// Where most grains move, or a few very far, all these moves cost more than to build T anew, and
+/// wider skins make both rarer. They leave the certificate behind. So then T *leaps*: it is built
+/// with skins wider than the grains, and the pairs of reference spheres that meet are listed by
+/// walking in it, which asks for no certificate (ReachList). Until the next leap T stays as it is;
+/// grains that leave their wide skins find their partners by such walks as well. When the grains
+/// have calmed down T follows them again.
 template <int Dim, RegularTriangulation<Dim> T = Triangulation<Dim>>
 class TriangulationNeighbourhood {
  public:
@@ -62,7 +73,8 @@ class TriangulationNeighbourhood {
   explicit TriangulationNeighbourhood(Laziness laziness) : laziness_(laziness) {}
 
   static const char* name() { return "regular triangulation"; }
-  /// Regular for the inflated reference discs, in a frame that drifts with the grains.
+  /// Regular for the inflated reference spheres, those of the last leap if T leaps; in a frame that
+  /// drifts with the grains.
   const T& triangulation() const { return t_; }
   const TriangulationCost& cost() const { return cost_; }
   const Laziness& laziness() const { return laziness_; }
@@ -75,25 +87,26 @@ class TriangulationNeighbourhood {
                   std::vector<Pair>& pairs) {
     const auto place = [&](int i) -> Vec<Dim> { return x.col(i); };
     if (reference_.cols() != x.cols()) {
-      build(x, radius);
+      build(x, radius, margin);
       for (int i = 0; i < size(); ++i) margin[i] = std::min(margin[i], room(i, x.col(i)));
     } else if (laziness_.follow) {
       // T does not change when everything moves together: displacements count against the drift.
       drift_ = common_drift<Dim>(size(), [&](int i) { return x.col(i) - reference_.col(i); });
+      choose_mode(x, radius, margin);
       for (int i = 0; i < size(); ++i) see_to(i, x.col(i), margin);
       update(place, radius, margin);
     } else {
       for (int i = 0; i < size(); ++i) margin[i] = std::min(margin[i], 0.5 * skin_[i]);
     }
 
-    collect_near_edges(x, radius, margin, pairs);
+    collect_near(x, radius, margin, pairs);
     if (!uncertain_.empty()) search_around_uncertain(x, radius, margin, pairs);
   }
 
-  /// Also adds to the strays the grains that got new references; `pairs` are edges of T.
+  /// Also adds to the strays the grains that got new references.
   bool pairs_of(std::vector<int>& strays, const PlaceOf<Dim>& place, const Eigen::VectorXd& radius,
                 Eigen::VectorXd& margin, std::vector<Pair>& pairs) {
-    if (!laziness_.follow || !uncertain_.empty()) return false;
+    if (!laziness_.follow || !uncertain_.empty() || leap_is_due()) return false;
     for (const int i : strays) see_to(i, place(i), margin);
     update(place, radius, margin);
     if (!uncertain_.empty()) return false;
@@ -101,7 +114,12 @@ class TriangulationNeighbourhood {
     sort_unique(strays);
     pairs.clear();
     for (const int i : strays) {
-      t_.for_each_neighbour(i, [&](int j) { pairs.push_back({std::min(i, j), std::max(i, j)}); });
+      const auto add = [&](int j) { pairs.push_back({std::min(i, j), std::max(i, j)}); };
+      if (leaping_) {
+        reach_.for_each_partner(i, add);
+      } else {
+        t_.for_each_neighbour(i, add);
+      }
     }
     return true;
   }
@@ -118,19 +136,36 @@ class TriangulationNeighbourhood {
   int size() const { return static_cast<int>(weight_.size()); }
   State& state(int i) { return state_[static_cast<std::size_t>(i)]; }
 
-  void build(const Columns<Dim>& x, const Eigen::VectorXd& radius) {
-    // Skins follow the neighbours in T, and T the skins: start without.
-    reference_ = x;
+  void build(const Columns<Dim>& x, const Eigen::VectorXd& radius, const Eigen::VectorXd& margin) {
     Random random(1);
     aside_ = x.unaryExpr([&](double) { return kHair * random.uniform(-1, 1); });
+    skin_.setZero(radius.size());
+    state_.assign(static_cast<std::size_t>(x.cols()), State::at_rest);
+    moved_.clear();
+    placed_.clear();
+    // Skins follow the neighbours in T, and T the skins: start without.
+    build_without_skins(x, radius);
+    if (laziness_.follow && laziness_.leap && share_of_fast(radius, margin) > kMany) {
+      leap(x, radius);
+    } else {
+      give_skins(x, radius);
+    }
+  }
+
+  void build_without_skins(const Columns<Dim>& x, const Eigen::VectorXd& radius) {
+    reference_ = x;
     for (int i = 0; i < x.cols(); ++i) reference_.col(i) += radius[i] * aside_.col(i);
     drift_.setZero();
     weight_ = radius.array().square();
     t_.build(reference_, weight_);
-    skin_.setZero(radius.size());
-    state_.assign(static_cast<std::size_t>(size()), State::at_rest);
-    moved_.clear();
-    placed_.clear();
+  }
+
+  /// Builds T with skins for which it follows the grains.
+  /// @pre T was built without
+  void give_skins(const Columns<Dim>& x, const Eigen::VectorXd& radius) {
+    leaping_ = false;
+    reach_ = {};
+    spent_ = 0;
     for (int i = 0; i < size(); ++i) join(i);
     const auto place = [&](int i) -> Vec<Dim> { return x.col(i); };
     renew(place, radius,
@@ -138,6 +173,57 @@ class TriangulationNeighbourhood {
     t_.build(reference_, weight_);
     placed_.swap(moved_);
     certify(place, radius);
+  }
+
+  /// Whether moves since the last build have cost as much as one.
+  bool leap_is_due() const { return laziness_.leap && spent_ > kLeap * size(); }
+
+  /// The share of grains that will soon have moved by the width of a skin: judged by the margins
+  /// that are wanted for them, which follow speeds above a floor that is the same for all.
+  static double share_of_fast(const Eigen::VectorXd& radius, const Eigen::VectorXd& margin) {
+    if (radius.size() == 0) return 0;
+    const Eigen::ArrayXd wanted = margin.array() / radius.array();
+    const auto fast = (wanted > wanted.minCoeff() + kFast).count();
+    return static_cast<double>(fast) / static_cast<double>(radius.size());
+  }
+
+  /// Leaps, or follows again, if it is time to.
+  void choose_mode(const Columns<Dim>& x, const Eigen::VectorXd& radius,
+                   const Eigen::VectorXd& margin) {
+    if (!laziness_.leap) return;
+    const double fast = share_of_fast(radius, margin);
+    calm_ = fast < kFew ? calm_ + 1 : 0;
+    if (leap_is_due() || (!leaping_ && fast > kMany)) {
+      leap(x, radius);
+    } else if (leaping_ && calm_ > kCalm) {
+      build_without_skins(x, radius);
+      give_skins(x, radius);
+    }
+  }
+
+  /// Builds T anew with references where the grains are, and lists the pairs that meet.
+  void leap(const Columns<Dim>& x, const Eigen::VectorXd& radius) {
+    Eigen::VectorXd smallest = radius;  // around a grain, which a wider skin would hide
+    for (const auto& [i, j] : t_.edges()) {
+      smallest[i] = std::min(smallest[i], radius[j]);
+      smallest[j] = std::min(smallest[j], radius[i]);
+    }
+    leaping_ = true;
+    spent_ = 0;
+    drift_.setZero();
+    for (int i = 0; i < size(); ++i) {
+      const double skin = kWideSkin * smallest[i];
+      reference_.col(i) = x.col(i) + skin * aside_.col(i);
+      set_skin(radius, i, (1 - 1e-6) * skin);
+    }
+    t_.build(reference_, weight_);
+    reach_.build(t_, [&](int i) { return reference_ball(radius, i); });
+    uncertain_.clear();
+    ++cost_.leaps;
+  }
+
+  typename ReachList<Dim>::Ball reference_ball(const Eigen::VectorXd& radius, int i) const {
+    return {reference_.col(i), radius[i] + skin_[i]};
   }
 
   /// Asks for no more margin than half a skin; a grain whose skin has no room for that joins
@@ -154,10 +240,27 @@ class TriangulationNeighbourhood {
     placed_.clear();
     if (moved_.empty()) return;
     ++cost_.updates;
-    renew(place, radius, margin);
-    move_references();
-    certify(place, radius);
+    if (leaping_) {
+      placed_.swap(moved_);
+      for (const int i : placed_) {
+        reference_.col(i) = place(i) - drift_;
+        reach_.move(i, reference_ball(radius, i));
+        state(i) = State::at_rest;
+      }
+      cost_.walks += static_cast<std::int64_t>(placed_.size());
+      calm_ = 0;
+      spend(kWalk + kComparison * static_cast<std::int64_t>(reach_.apart()));
+    } else {
+      renew(place, radius, margin);
+      move_references();
+      certify(place, radius);
+      spend(kMove);
+    }
     for (const int i : placed_) margin[i] = std::min(margin[i], room(i, place(i)));
+  }
+
+  void spend(std::int64_t price_of_one) {
+    spent_ += price_of_one * static_cast<std::int64_t>(placed_.size());
   }
 
   /// How far i may move before it leaves its skin; negative if it has, or is not a number.
@@ -327,18 +430,33 @@ class TriangulationNeighbourhood {
     list.erase(std::unique(list.begin(), list.end()), list.end());
   }
 
-  /// The edges of T within reach; T has them in order.
-  void collect_near_edges(const Columns<Dim>& x, const Eigen::VectorXd& radius,
-                          const Eigen::VectorXd& margin, std::vector<Pair>& pairs) {
-    const auto edges = t_.edges();
-    pairs.resize(edges.size());
-    std::size_t count = 0;
-    for (const auto& [i, j] : edges) {
-      // Written in any case and counted if near: cheaper than a branch that nobody can predict.
-      pairs[count] = {i, j};
-      count += within_reach<Dim>(x, radius, margin, i, j);
+  /// The edges of T within reach; or, while T leaps, the pairs of reference spheres that meet.
+  void collect_near(const Columns<Dim>& x, const Eigen::VectorXd& radius,
+                    const Eigen::VectorXd& margin, std::vector<Pair>& pairs) {
+    now_.resize(static_cast<std::size_t>(size()));
+    for (int i = 0; i < size(); ++i) {
+      now_[static_cast<std::size_t>(i)] = {x.col(i), radius[i] + margin[i]};
     }
-    pairs.resize(count);
+    std::size_t count = 0;
+    const auto filter = [&](const auto& candidates) {
+      pairs.resize(count + candidates.size());
+      for (const auto& [i, j] : candidates) {
+        const auto &a = now_[static_cast<std::size_t>(i)], &b = now_[static_cast<std::size_t>(j)];
+        // Written in any case and counted if near: cheaper than a branch that nobody can predict.
+        pairs[count] = {i, j};
+        count += within_reach<Dim>(a.centre, a.radius, b.centre, b.radius);
+      }
+      pairs.resize(count);
+    };
+    if (leaping_) {
+      filter(reach_.pairs());
+      const auto added = static_cast<std::ptrdiff_t>(count);
+      filter(reach_.added());
+      std::sort(pairs.begin() + added, pairs.end());
+      std::inplace_merge(pairs.begin(), pairs.begin() + added, pairs.end());
+    } else {
+      filter(t_.edges());
+    }
   }
 
   /// Every pair that T may lack has an end that lies on a failed edge or is hidden: look at all
@@ -358,12 +476,22 @@ class TriangulationNeighbourhood {
   }
 
   static constexpr int kRounds = 3;
-  static constexpr double kMostSkin = 2;      // of a grain's radius
-  static constexpr double kLeastSkin = 0.02;  // of the smallest radius around
-  static constexpr double kSmallSkin = 0.24;  // of the same: below (3 sqrt 2 - 4)
-  static constexpr double kMostAhead = 0.7;   // of a skin
-  static constexpr double kTooLittle = 0.25;  // of a fair share
-  static constexpr double kHair = 1e-7;       // of a skin
+  static constexpr double kMostSkin = 2;            // of a grain's radius
+  static constexpr double kLeastSkin = 0.02;        // of the smallest radius around
+  static constexpr double kSmallSkin = 0.24;        // of the same: below (3 sqrt 2 - 4)
+  static constexpr double kMostAhead = 0.7;         // of a skin
+  static constexpr double kTooLittle = 0.25;        // of a fair share
+  static constexpr double kHair = 1e-7;             // of a skin
+  static constexpr double kWideSkin = 1.5;          // of the smallest radius around
+  static constexpr double kFast = 0.01;             // of a radius, that a grain wants as margin
+  static constexpr double kMany = 0.5, kFew = 0.1;  // of all grains
+  static constexpr int kCalm = 5;                   // questions without a grain that left its skin
+  /// Roughly what things cost [ns]: to move a reference in T, to find the partners of a grain by a
+  /// walk, to compare it with one that stands apart; and a leap, for each grain.
+  static constexpr std::int64_t kMove = Dim == 2 ? 900 : 40000;
+  static constexpr std::int64_t kWalk = Dim == 2 ? 1000 : 6000;
+  static constexpr std::int64_t kComparison = 2;
+  static constexpr std::int64_t kLeap = Dim == 2 ? 3000 : 9000;
 
   Laziness laziness_;
   T t_;
@@ -375,6 +503,11 @@ class TriangulationNeighbourhood {
   Eigen::VectorXd skin_;
   Vec<Dim> drift_ = Vec<Dim>::Zero();  ///< of the grains against the references' frame [m]
   std::vector<int> uncertain_;         ///< grains whose pairs T may lack
+  bool leaping_ = false;
+  int calm_ = 0;          ///< questions since many grains were fast, or one left a wide skin
+  ReachList<Dim> reach_;  ///< while leaping
+  std::vector<typename ReachList<Dim>::Ball> now_;  ///< scratch: grains with their margins
+  std::int64_t spent_ = 0;                          ///< since the last build [ns], roughly
   TriangulationCost cost_;
 
   std::vector<State> state_;

@@ -70,6 +70,8 @@ TEST_SUITE("triangulation_neighbourhood") {
          {settling_bed<Dim>(kCount, 1), stirring<Dim>(kCount, 2), size_mix<Dim>(kCount, 30, 3),
           size_mix<Dim>(kCount, 1000, 4), bullet<Dim>(kCount, 5), drifting<Dim>(kCount, 6)}) {
       check_trajectory<Dim, Law, Triangulated<Dim>>(scene, cases(Dim == 2 ? 10000 : 3000, 100000));
+      check_trajectory<Dim, Law>(scene, cases(2000, 100000),
+                                 Triangulated<Dim>(Laziness{.leap = false}));
       check_trajectory<Dim, Law, CellGrid<Dim>>(scene, cases(2000, 100000));
     }
   }
@@ -82,15 +84,19 @@ TEST_SUITE("triangulation_neighbourhood") {
       for (const auto& scene : normal_scenes<Dim>(static_cast<std::uint64_t>(seed))) {
         CAPTURE(seed);
         CAPTURE(scene.name);
-        auto sim = start<Dim>(scene, law, Triangulated<Dim>{});
+        for (const bool leap : {false, true}) {
+          CAPTURE(leap);
+          auto sim = start<Dim>(scene, law, Triangulated<Dim>(Laziness{.leap = leap}));
 
-        const AuditResult result = audited<Dim>(sim, cases(5000, 50000));
+          const AuditResult result = audited<Dim>(sim, cases(5000, 50000));
 
-        CHECK(result.contacts > 0);
-        CHECK(result.missed == 0);
-        CHECK(sim.amended() > 0);
-        CHECK(sim.neighbourhood().cost().moved > 0);
-        CHECK(sim.neighbourhood().cost().ladder.rebuilds == 0);
+          const TriangulationCost& cost = sim.neighbourhood().cost();
+          CHECK(result.contacts > 0);
+          CHECK(result.missed == 0);
+          CHECK(sim.amended() > 0);
+          CHECK((leap ? cost.leaps : cost.moved) > 0);
+          CHECK(cost.ladder.rebuilds == 0);
+        }
       }
     }
   }
@@ -253,6 +259,52 @@ TEST_SUITE("triangulation_neighbourhood") {
     }
   }
 
+  TEST_CASE_TEMPLATE(
+      "T leaps while most grains fly, walks with those that leave their skins, and "
+      "follows again when they have calmed down",
+      S, Space<2>, Space<3>) {
+    constexpr int Dim = S::Dim;
+    Random random(1);
+    auto cloud = make_cloud<Dim>(CloudKind::kSizes, 80, random);
+    cloud.x *= 2;
+    Columns<Dim> velocity(Dim, cloud.x.cols());
+    for (Eigen::Index i = 0; i < velocity.cols(); ++i) {
+      velocity.col(i) = cloud.radius[i] * random_direction<Dim>(random);
+    }
+    // What a near list would ask for: more for fast grains, and one of them is slow.
+    velocity.col(0).setZero();
+    Triangulated<Dim> found;
+    std::vector<Pair> pairs;
+    std::vector<Pair> expected;
+    const auto ask = [&](double wanted) {
+      Eigen::VectorXd margin = wanted * cloud.radius;
+      margin[0] = 0.001 * cloud.radius[0];
+      found.near_pairs(cloud.x, cloud.radius, margin, pairs);
+      CHECK(margin.minCoeff() >= 0);
+      AllPairs<Dim>{}.near_pairs(cloud.x, cloud.radius, margin, expected);
+      REQUIRE(pairs == expected);
+      REQUIRE(found.triangulation().audit().empty());
+    };
+    for (int k = 0; k < 200; ++k) {
+      CAPTURE(k);
+      ask(0.05);
+      cloud.x += 0.05 * velocity;
+    }
+    ask(0.001);
+    const TriangulationCost flying = found.cost();
+    for (int k = 0; k < 10; ++k) ask(0.001);
+    const TriangulationCost calm = found.cost();
+    cloud.x.col(1).array() += 5 * cloud.radius[1];
+    ask(0.001);
+
+    CHECK(flying.leaps > 1);
+    CHECK(flying.walks > 0);
+    CHECK(flying.moved == 0);
+    CHECK(calm.leaps == flying.leaps);
+    CHECK(found.cost().walks == calm.walks);
+    CHECK(found.cost().moved > calm.moved);
+  }
+
   TEST_CASE_TEMPLATE("in a settling bed there is nothing to search for", S, Space<2>, Space<3>) {
     constexpr int Dim = S::Dim;
     auto sim = start<Dim>(settling_bed<Dim>(kMany<Dim>, 1), make_law<FrictionalSpring>(kGravel),
@@ -269,7 +321,7 @@ TEST_SUITE("triangulation_neighbourhood") {
       Space<2>, Space<3>) {
     constexpr int Dim = S::Dim;
     for (const Laziness& laziness :
-         {Laziness{.follow = false}, Laziness{.skin = 13, .certify = false}}) {
+         {Laziness{.follow = false}, Laziness{.skin = 13, .certify = false, .leap = false}}) {
       CAPTURE(laziness.skin);
       auto sim = start<Dim>(stirring<Dim>(kMany<Dim>, 1), make_law<FrictionalSpring>(kGravel),
                             Triangulated<Dim>{laziness});
