@@ -258,6 +258,7 @@ bool Triangulation<3>::insert_visible(int site) {
 
 /// Of a site that will be joined to rim_ in place of hole_.
 void Triangulation<3>::note_edges_of_insertion(int site) {
+  if (!edges_.live()) return;
   const std::size_t first_note = edges_.mark();
   for (const int cell : hole_) note_edges_gone(cell);
   for (const int corner : rim_) {

@@ -20,6 +20,7 @@
 #include <functional>
 #include <numbers>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -38,6 +39,7 @@ inline constexpr double kRestitution = 0.5;
 inline constexpr double kFriction = 0.5;
 inline constexpr double kTangentialDamping = 0.2;
 inline constexpr double kStepsPerContact = 25;
+inline constexpr int kShareFrom = 5000;         // grains: beds are made with all cores then
 inline constexpr double kLargestOverlap = 0.5;  // a hard impact is deep, and still measured
 
 /// A state to start from: what every contender is given. Wall 0 is the floor.
@@ -101,6 +103,8 @@ void measure_height(Bed<Dim>& bed) {
 template <int Dim>
 void advance(Bed<Dim>& bed, int steps, const Checkpoint& checkpoint) {
   auto sim = simulate<Dim, TriangulationNeighbourhood<Dim>>(bed);
+  // The same bits with any number of threads, and only runs in turns are measured.
+  if (bed.count() > kShareFrom) sim.use_threads(std::max(1U, std::thread::hardware_concurrency()));
   for (int s = 0; s < steps; ++s) {
     sim.step();
     if (s % 100 == 0) checkpoint();
@@ -260,8 +264,15 @@ void put_large_grains(Bed<Dim>& bed, double radius, int count, const Checkpoint&
   });
   bed.grains.insert(bed.grains.end(), large.begin(), large.end());
   // Not softened: a bed this wide would leap when it hardens.
-  settle<Dim>(bed, ordinary, smallest, {{1, Dim == 2 ? 3 : 2.5}}, checkpoint);
+  settle<Dim>(bed, ordinary, smallest, {{1, Dim == 2 ? 3 : 8}}, checkpoint);
   choose_law<Dim>(bed, ordinary, smallest);
+}
+
+/// Steps in one period of shaking.
+template <int Dim>
+int steps_of_period(const Bed<Dim>& bed, double radius) {
+  const double period = std::numbers::pi * std::sqrt(radius / kGravity);
+  return static_cast<int>(std::lround(period / bed.setting.time_step));
 }
 
 /// Shakes the box up and down by one radius with four times gravity, and stops where it turns, at

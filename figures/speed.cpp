@@ -256,8 +256,16 @@ class Harness {
     Plan plan;
     const double effort = quick() ? grain_steps / 40 : grain_steps;
     plan.steps = std::clamp(static_cast<int>(effort / grains), 20, 3000);
-    plan.warm_up = std::min(100, plan.steps / 2);
+    plan.warm_up = std::min(200, 2 * plan.steps);  // margins adapt
     if (quick()) plan.rounds = 2;
+    return plan;
+  }
+
+  /// The same, through one whole period of shaking.
+  template <int Dim>
+  Plan plan_of_period(const Bed<Dim>& bed, double radius) const {
+    Plan plan = plan_for(bed.count(), 3e6);
+    plan.steps = steps_of_period(bed, radius) / (quick() ? 8 : 1);
     return plan;
   }
 
@@ -383,9 +391,9 @@ class Harness {
     if (quick()) return;
     scenes.emplace_back([this] {
       std::vector<std::unique_ptr<Match<3>>> matches;
-      for (const Mix& mix : {Mix{1, 3, 0}, {10, 3, 3}}) {
+      for (const Mix& mix : {Mix{1, 4, 0}, {10, 4, 5}, {30, 4, 1}}) {
         matches.push_back(
-            mixture<3>(ball_tile(1736, kRadius), {mix.tiles, 3}, mix.ratio, mix.large));
+            mixture<3>(ball_tile(1736, kRadius), {mix.tiles, mix.tiles}, mix.ratio, mix.large));
       }
       compete_together(matches);
     });
@@ -445,13 +453,14 @@ class Harness {
       Bed<2> bed = tiled<2>(disc_tile(), {quick() ? 2 : 10});
       doing_ = "shaking discs";
       shake<2>(bed, kRadius, checkpoint_);
-      compete<2>(kMovingGroup, "discs shaken with 4 g", bed, plan_for(bed.count(), 3e6), 0);
+      compete<2>(kMovingGroup, "discs shaken with 4 g", bed, plan_of_period(bed, kRadius), 0);
     });
     scenes.emplace_back([this] {
       Bed<3> bed = ball_tile(quick() ? 371 : 1736, quick() ? 2 * kRadius : kRadius);
       doing_ = "shaking spheres";
-      shake<3>(bed, bed.grains.front().radius, checkpoint_);
-      compete<3>(kMovingGroup, "spheres shaken with 4 g", bed, plan_for(bed.count(), 3e6), 0);
+      const double radius = bed.grains.front().radius;
+      shake<3>(bed, radius, checkpoint_);
+      compete<3>(kMovingGroup, "spheres shaken with 4 g", bed, plan_of_period(bed, radius), 0);
     });
   }
 

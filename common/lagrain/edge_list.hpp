@@ -60,23 +60,30 @@ class EdgeList {
   template <class ForEach>
   void find(int size, ForEach&& for_each) {
     const auto index = [](int i) { return static_cast<std::size_t>(i); };
-    // A counting sort by the lower end, then short sorts.
+    // A counting sort by the lower end; then what is left of each row without repetitions is short.
     std::vector<std::size_t> end(index(size) + 2, 0);
     for_each([&](int i, int j) { ++end[index(std::min(i, j)) + 2]; });
     for (std::size_t i = 2; i < end.size(); ++i) end[i] += end[i - 1];
     std::vector<int> other(end.back());
     for_each([&](int i, int j) { other[end[index(std::min(i, j)) + 1]++] = std::max(i, j); });
     edges_.clear();
+    std::vector<int> listed_with(index(size), -1);
     for (int i = 0; i < size; ++i) {
-      const auto row = other.begin() + static_cast<std::ptrdiff_t>(end[index(i)]);
-      const auto row_end = other.begin() + static_cast<std::ptrdiff_t>(end[index(i) + 1]);
-      std::sort(row, row_end);
-      std::for_each(row, std::unique(row, row_end), [&](int j) { edges_.push_back({i, j}); });
+      const auto first = static_cast<std::ptrdiff_t>(edges_.size());
+      for (std::size_t k = end[index(i)]; k < end[index(i) + 1]; ++k) {
+        const int j = other[k];
+        if (listed_with[index(j)] == i) continue;
+        listed_with[index(j)] = i;
+        edges_.push_back({i, j});
+      }
+      std::sort(edges_.begin() + first, edges_.end());
     }
     live_ = true;
     notes_.clear();
   }
 
+  /// False for a list that ignores notes.
+  bool live() const { return live_; }
   void note_made(int a, int b) { note(a, b, 0); }
   void note_gone(int a, int b) { note(a, b, 1); }
   /// Notes so far; those after a mark can be taken back, or reduced to what they change when each

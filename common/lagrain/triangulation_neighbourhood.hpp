@@ -28,7 +28,7 @@ struct Laziness {
   double skin = 1.3;
   bool certify = true;  ///< test the certificate after every update
   bool follow = true;   ///< false: T is built once and never moved
-  bool leap = true;     ///< where most grains move, or some very far, build T anew with wide skins
+  bool leap = true;     ///< where many grains fly, build T anew with wide skins
 };
 
 /// What the triangulation has cost so far.
@@ -60,12 +60,12 @@ struct TriangulationCost {
 /// ends are brought up to date with small skins. What still fails, and what is hidden, is searched
 /// by brute force: then too every pair is found, and `cost().searched` says so.
 ///
-/// Where most grains move, or a few very far, all these moves cost more than to build T anew, and
-/// wider skins make both rarer. They leave the certificate behind. So then T *leaps*: it is built
-/// with skins wider than the grains, and the pairs of reference spheres that meet are listed by
-/// walking in it, which asks for no certificate (ReachList). Until the next leap T stays as it is;
-/// grains that leave their wide skins find their partners by such walks as well. When the grains
-/// have calmed down T follows them again.
+/// Where many grains fly, or a few very far, all these moves cost more than to build T anew, and
+/// wider skins make both rarer. They leave the certificate behind. So when moves have cost as much
+/// as two builds T *leaps*: it is built with skins wider than the grains, and the pairs of
+/// reference spheres that meet are listed by walking in it, which asks for no certificate
+/// (ReachList). Until the next leap T stays as it is; grains that leave their wide skins find their
+/// partners by such walks as well. When the grains have calmed down T follows them again.
 template <int Dim, RegularTriangulation<Dim> T = Triangulation<Dim>>
 class TriangulationNeighbourhood {
  public:
@@ -87,7 +87,7 @@ class TriangulationNeighbourhood {
                   std::vector<Pair>& pairs) {
     const auto place = [&](int i) -> Vec<Dim> { return x.col(i); };
     if (reference_.cols() != x.cols()) {
-      build(x, radius, margin);
+      build(x, radius);
       for (int i = 0; i < size(); ++i) margin[i] = std::min(margin[i], room(i, x.col(i)));
     } else if (laziness_.follow) {
       // T does not change when everything moves together: displacements count against the drift.
@@ -136,7 +136,7 @@ class TriangulationNeighbourhood {
   int size() const { return static_cast<int>(weight_.size()); }
   State& state(int i) { return state_[static_cast<std::size_t>(i)]; }
 
-  void build(const Columns<Dim>& x, const Eigen::VectorXd& radius, const Eigen::VectorXd& margin) {
+  void build(const Columns<Dim>& x, const Eigen::VectorXd& radius) {
     Random random(1);
     aside_ = x.unaryExpr([&](double) { return kHair * random.uniform(-1, 1); });
     skin_.setZero(radius.size());
@@ -145,7 +145,7 @@ class TriangulationNeighbourhood {
     placed_.clear();
     // Skins follow the neighbours in T, and T the skins: start without.
     build_without_skins(x, radius);
-    if (laziness_.follow && laziness_.leap && share_of_fast(radius, margin) > kMany) {
+    if (leaping_) {
       leap(x, radius);
     } else {
       give_skins(x, radius);
@@ -175,27 +175,23 @@ class TriangulationNeighbourhood {
     certify(place, radius);
   }
 
-  /// Whether moves since the last build have cost as much as one.
-  bool leap_is_due() const { return laziness_.leap && spent_ > kLeap * size(); }
-
-  /// The share of grains that will soon have moved by the width of a skin: judged by the margins
-  /// that are wanted for them, which follow speeds above a floor that is the same for all.
-  static double share_of_fast(const Eigen::VectorXd& radius, const Eigen::VectorXd& margin) {
-    if (radius.size() == 0) return 0;
-    const Eigen::ArrayXd wanted = margin.array() / radius.array();
-    const auto fast = (wanted > wanted.minCoeff() + kFast).count();
-    return static_cast<double>(fast) / static_cast<double>(radius.size());
+  /// Whether what was spent on single grains since the last build would have paid for others: so
+  /// the choice of mode never costs more than a few times what the better one does.
+  bool leap_is_due() const {
+    return laziness_.leap && spent_ > (leaping_ ? 1 : kPatience) * kLeap * size();
   }
 
-  /// Leaps, or follows again, if it is time to.
+  /// Leaps, or follows again, if it is time to. Calm is judged by the margins that are wanted,
+  /// which follow speeds above a floor that is the same for all.
   void choose_mode(const Columns<Dim>& x, const Eigen::VectorXd& radius,
                    const Eigen::VectorXd& margin) {
-    if (!laziness_.leap) return;
-    const double fast = share_of_fast(radius, margin);
-    calm_ = fast < kFew ? calm_ + 1 : 0;
-    if (leap_is_due() || (!leaping_ && fast > kMany)) {
+    if (leap_is_due()) {
       leap(x, radius);
-    } else if (leaping_ && calm_ > kCalm) {
+    } else if (leaping_) {
+      const Eigen::ArrayXd wanted = margin.array() / radius.array();
+      const auto fast = (wanted > wanted.minCoeff() + kFast).count();
+      calm_ = kFewest * fast < size() ? calm_ + 1 : 0;
+      if (calm_ < kCalm) return;
       build_without_skins(x, radius);
       give_skins(x, radius);
     }
@@ -210,6 +206,7 @@ class TriangulationNeighbourhood {
     }
     leaping_ = true;
     spent_ = 0;
+    calm_ = 0;
     drift_.setZero();
     for (int i = 0; i < size(); ++i) {
       const double skin = kWideSkin * smallest[i];
@@ -249,18 +246,14 @@ class TriangulationNeighbourhood {
       }
       cost_.walks += static_cast<std::int64_t>(placed_.size());
       calm_ = 0;
-      spend(kWalk + kComparison * static_cast<std::int64_t>(reach_.apart()));
+      spent_ += static_cast<std::int64_t>(placed_.size()) *
+                (kWalk + kComparison * static_cast<std::int64_t>(reach_.apart()));
     } else {
       renew(place, radius, margin);
       move_references();
       certify(place, radius);
-      spend(kMove);
     }
     for (const int i : placed_) margin[i] = std::min(margin[i], room(i, place(i)));
-  }
-
-  void spend(std::int64_t price_of_one) {
-    spent_ += price_of_one * static_cast<std::int64_t>(placed_.size());
   }
 
   /// How far i may move before it leaves its skin; negative if it has, or is not a number.
@@ -363,7 +356,10 @@ class TriangulationNeighbourhood {
   /// Tells T of the new references of moved_, and empties it into placed_.
   void move_references() {
     cost_.moved += static_cast<std::int64_t>(moved_.size());
-    cost_.ladder += t_.move(moved_, reference_, weight_);
+    const UpdateReport report = t_.move(moved_, reference_, weight_);
+    cost_.ladder += report;
+    spent_ += kMove * static_cast<std::int64_t>(moved_.size()) + kExtraction * report.extracted +
+              kLeap * size() * report.rebuilds;
     placed_.insert(placed_.end(), moved_.begin(), moved_.end());
     moved_.clear();
   }
@@ -476,22 +472,25 @@ class TriangulationNeighbourhood {
   }
 
   static constexpr int kRounds = 3;
-  static constexpr double kMostSkin = 2;            // of a grain's radius
-  static constexpr double kLeastSkin = 0.02;        // of the smallest radius around
-  static constexpr double kSmallSkin = 0.24;        // of the same: below (3 sqrt 2 - 4)
-  static constexpr double kMostAhead = 0.7;         // of a skin
-  static constexpr double kTooLittle = 0.25;        // of a fair share
-  static constexpr double kHair = 1e-7;             // of a skin
-  static constexpr double kWideSkin = 1.5;          // of the smallest radius around
-  static constexpr double kFast = 0.01;             // of a radius, that a grain wants as margin
-  static constexpr double kMany = 0.5, kFew = 0.1;  // of all grains
-  static constexpr int kCalm = 5;                   // questions without a grain that left its skin
-  /// Roughly what things cost [ns]: to move a reference in T, to find the partners of a grain by a
-  /// walk, to compare it with one that stands apart; and a leap, for each grain.
-  static constexpr std::int64_t kMove = Dim == 2 ? 900 : 40000;
-  static constexpr std::int64_t kWalk = Dim == 2 ? 1000 : 6000;
+  static constexpr double kMostSkin = 2;      // of a grain's radius
+  static constexpr double kLeastSkin = 0.02;  // of the smallest radius around
+  static constexpr double kSmallSkin = 0.24;  // of the same: below (3 sqrt 2 - 4)
+  static constexpr double kMostAhead = 0.7;   // of a skin
+  static constexpr double kTooLittle = 0.25;  // of a fair share
+  static constexpr double kHair = 1e-7;       // of a skin
+  static constexpr double kWideSkin = 1.5;    // of the smallest radius around
+  static constexpr double kFast = 0.01;       // of a radius, that a grain wants as margin
+  static constexpr int kFewest = 10;          // of so many grains at most one is fast in a calm bed
+  static constexpr int kCalm = 5;             // questions in which it is, and none left its skin
+  /// Roughly what things cost [ns]: to move a reference in T, more if it had to be taken out; to
+  /// find the partners of a grain by a walk, and to compare it with one that stands apart; and a
+  /// leap, for each grain.
+  static constexpr std::int64_t kMove = Dim == 2 ? 800 : 6000;
+  static constexpr std::int64_t kExtraction = Dim == 2 ? 5000 : 90000;
+  static constexpr std::int64_t kWalk = Dim == 2 ? 1500 : 8000;
   static constexpr std::int64_t kComparison = 2;
-  static constexpr std::int64_t kLeap = Dim == 2 ? 3000 : 9000;
+  static constexpr std::int64_t kLeap = Dim == 2 ? 3000 : 8000;
+  static constexpr std::int64_t kPatience = 2;  // leaps, before the first
 
   Laziness laziness_;
   T t_;
@@ -504,8 +503,8 @@ class TriangulationNeighbourhood {
   Vec<Dim> drift_ = Vec<Dim>::Zero();  ///< of the grains against the references' frame [m]
   std::vector<int> uncertain_;         ///< grains whose pairs T may lack
   bool leaping_ = false;
-  int calm_ = 0;          ///< questions since many grains were fast, or one left a wide skin
-  ReachList<Dim> reach_;  ///< while leaping
+  int calm_ = 0;                                    ///< questions since the bed was not
+  ReachList<Dim> reach_;                            ///< while leaping
   std::vector<typename ReachList<Dim>::Ball> now_;  ///< scratch: grains with their margins
   std::int64_t spent_ = 0;                          ///< since the last build [ns], roughly
   TriangulationCost cost_;

@@ -260,7 +260,7 @@ TEST_SUITE("triangulation_neighbourhood") {
   }
 
   TEST_CASE_TEMPLATE(
-      "T leaps while most grains fly, walks with those that leave their skins, and "
+      "T leaps where grains fly, walks with those that leave their skins, and "
       "follows again when they have calmed down",
       S, Space<2>, Space<3>) {
     constexpr int Dim = S::Dim;
@@ -299,7 +299,7 @@ TEST_SUITE("triangulation_neighbourhood") {
 
     CHECK(flying.leaps > 1);
     CHECK(flying.walks > 0);
-    CHECK(flying.moved == 0);
+    CHECK(flying.moved > 0);  // before it leaps
     CHECK(calm.leaps == flying.leaps);
     CHECK(found.cost().walks == calm.walks);
     CHECK(found.cost().moved > calm.moved);
