@@ -62,7 +62,7 @@ struct TriangulationCost {
 ///
 /// Where many grains fly, or a few very far, all these moves cost more than to build T anew, and
 /// wider skins make both rarer. They leave the certificate behind. So when moves have cost as much
-/// as two builds T *leaps*: it is built with skins wider than the grains, and the pairs of
+/// as one build, T *leaps*: it is built with skins wider than the grains, and the pairs of
 /// reference spheres that meet are listed by walking in it, which asks for no certificate
 /// (ReachList). Until the next leap T stays as it is; grains that leave their wide skins find their
 /// partners by such walks as well. When the grains have calmed down T follows them again.
@@ -175,11 +175,9 @@ class TriangulationNeighbourhood {
     certify(place, radius);
   }
 
-  /// Whether what was spent on single grains since the last build would have paid for others: so
-  /// the choice of mode never costs more than a few times what the better one does.
-  bool leap_is_due() const {
-    return laziness_.leap && spent_ > (leaping_ ? 1 : kPatience) * kLeap * size();
-  }
+  /// Whether what was spent on single grains since the last build would have paid for a leap: so
+  /// the choice of mode costs at most about twice what the better one does.
+  bool leap_is_due() const { return laziness_.leap && spent_ > kLeap * size(); }
 
   /// Leaps, or follows again, if it is time to. Calm is judged by the margins that are wanted,
   /// which follow speeds above a floor that is the same for all.
@@ -490,7 +488,6 @@ class TriangulationNeighbourhood {
   static constexpr std::int64_t kWalk = Dim == 2 ? 1500 : 8000;
   static constexpr std::int64_t kComparison = 2;
   static constexpr std::int64_t kLeap = Dim == 2 ? 3000 : 8000;
-  static constexpr std::int64_t kPatience = 2;  // leaps, before the first
 
   Laziness laziness_;
   T t_;
