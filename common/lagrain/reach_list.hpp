@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -66,6 +67,10 @@ class ReachList {
     guests_.clear();
     widest_ = 0;
     apart_.assign(t.hidden().begin(), t.hidden().end());
+    if (edge_ends_.empty()) {  // nowhere to walk
+      apart_.resize(index(n));
+      std::iota(apart_.begin(), apart_.end(), 0);
+    }
 
     first_.assign(1, 0);
     partners_.clear();
@@ -91,9 +96,7 @@ class ReachList {
   void move(int i, const Ball& ball) {
     balls_[index(i)] = ball;
     met_.clear();
-    if (edge_ends_.empty()) {
-      apart_.push_back(i);
-    } else {
+    if (!edge_ends_.empty()) {
       const int base = nearest(i);
       const Ball& b = sites_[index(base)];
       const double far = (ball.centre - b.centre).norm() + ball.radius;
