@@ -516,8 +516,7 @@ std::string words(const std::array<std::vector<Updates>, 2>& updates,
          "What the update does when all move. (e) to (j) Runs of " +
          std::to_string(grains) +
          " grains thrown by a box that shakes with four times gravity, which T follows by flips "
-         "alone "
-         "here: otherwise it would leap, with wider skins. Every update was compared "
+         "alone here: otherwise it would leap, with wider skins. Every update was compared "
          "with the build that follows it, and contacts in the runs with those found from nothing: "
          "see below. Lesson: the displacement from which on a build is faster, in radii, is " +
          break_even_text(updates, 1) + " where all sites move, " + break_even_text(updates, 0.1) +
