@@ -268,23 +268,21 @@ void put_large_grains(Bed<Dim>& bed, double radius, int count, const Checkpoint&
   choose_law<Dim>(bed, ordinary, smallest);
 }
 
-/// Steps in one period of shaking.
-template <int Dim>
-int steps_of_period(const Bed<Dim>& bed, double radius) {
-  const double period = std::numbers::pi * std::sqrt(radius / kGravity);
-  return static_cast<int>(std::lround(period / bed.setting.time_step));
+/// Period of shaking by one radius with four times gravity [s].
+inline double shake_period(double radius) {
+  return std::numbers::pi * std::sqrt(radius / kGravity);
 }
 
 /// Shakes the box up and down by one radius with four times gravity, and stops where it turns, at
 /// its lowest: every contender goes on from there.
 template <int Dim>
 void shake(Bed<Dim>& bed, double radius, const Checkpoint& checkpoint) {
-  const double frequency = std::sqrt(4 * kGravity / radius) / (2 * std::numbers::pi);
-  const double to_the_lowest = 1.75 / frequency;
+  const double period = shake_period(radius);
+  const double to_the_lowest = 1.75 * period;
   const int steps = static_cast<int>(std::lround(to_the_lowest / bed.setting.time_step));
   const auto set = [&](double start) {
     for (Wall<Dim>& wall : bed.walls) {
-      wall.motion = Shake<Dim>{radius * Vec<Dim>::Unit(Dim - 1), frequency, start};
+      wall.motion = Shake<Dim>{radius * Vec<Dim>::Unit(Dim - 1), 1 / period, start};
     }
   };
   set(0);

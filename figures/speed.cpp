@@ -265,7 +265,8 @@ class Harness {
   template <int Dim>
   Plan plan_of_period(const Bed<Dim>& bed, double radius) const {
     Plan plan = plan_for(bed.count(), 3e6);
-    plan.steps = steps_of_period(bed, radius) / (quick() ? 8 : 1);
+    const double steps = shake_period(radius) / bed.setting.time_step;
+    plan.steps = static_cast<int>(std::lround(steps)) / (quick() ? 8 : 1);
     return plan;
   }
 
