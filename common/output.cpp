@@ -159,7 +159,7 @@ class Recorder {
     try {
       while (!run_.finished() && !stopped) {
         if (run_.steps() % kSnapshotEvery == 0) last_.take(run_);
-        run_.step();
+        run_.step(steps_at_once());
         note();
         stopped = options_.stop && options_.stop();
       }
@@ -181,6 +181,15 @@ class Recorder {
 
  private:
   static constexpr std::int64_t kSnapshotEvery = 64;  // steps
+
+  /// As many as pass without a snapshot, a frame or a sample, and without keeping whoever wants to
+  /// interrupt waiting.
+  std::int64_t steps_at_once() const {
+    constexpr std::int64_t kGrainSteps = 4'000'000;
+    const std::int64_t snapshot = (run_.steps() / kSnapshotEvery + 1) * kSnapshotEvery;
+    const std::int64_t due = std::min({snapshot, next_frame_, next_sample_, run_.steps_planned()});
+    return std::clamp<std::int64_t>(kGrainSteps / std::max(1, run_.count()), 1, due - run_.steps());
+  }
 
   /// The step of the k-th frame or sample. One that would come a step before the end is the last.
   std::int64_t due(std::int64_t k, double every) const {

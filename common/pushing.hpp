@@ -17,13 +17,12 @@ namespace lagrain::detail {
 struct Syrup {
   static constexpr const char* kName = "syrup";
   static constexpr bool kConservativeOnly = false;
-  static constexpr bool kRemembersAcceleration = false;
   static constexpr int kEvaluations = 1;
   static constexpr double kKept = 0.9;  ///< of the velocity, in a step
   static constexpr double time_of(int) { return 1; }
 
   template <class V>
-  static void advance(int, V& x, V& v, const V& a, V&, double dt) {
+  static void advance(int, V& x, V& v, const V& a, double dt) {
     v = kKept * v + dt * a;
     x += dt * v;
   }
@@ -85,7 +84,7 @@ double push_apart(std::vector<Grain<Dim>>& grains, std::vector<Wall<Dim>> walls,
   };
   double left = largest_overlap();
   while (left > 0 && sim.steps() < most) {
-    for (int k = 0; k < kLookEvery; ++k) sim.step();
+    sim.step(kLookEvery);
     left = largest_overlap();
   }
   for (std::size_t i = 0; i < grains.size(); ++i) {

@@ -117,7 +117,7 @@ class SimulationRun final : public Run<Dim> {
   }
 
  private:
-  void advance() override { sim_.step(); }
+  void advance(std::int64_t count) override { sim_.step(count); }
   bool near_is_valid() const override { return sim_.near_list_holds(); }
 
   TimeScales scales_;

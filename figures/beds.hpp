@@ -105,9 +105,10 @@ void advance(Bed<Dim>& bed, int steps, const Checkpoint& checkpoint) {
   auto sim = simulate<Dim, TriangulationNeighbourhood<Dim>>(bed);
   // The same bits with any number of threads, and only runs in turns are measured.
   if (bed.count() > kShareFrom) sim.use_threads(std::max(1U, std::thread::hardware_concurrency()));
-  for (int s = 0; s < steps; ++s) {
-    sim.step();
-    if (s % 100 == 0) checkpoint();
+  constexpr int kBetweenChecks = 100;
+  for (int s = 0; s < steps; s += kBetweenChecks) {
+    sim.step(std::min(kBetweenChecks, steps - s));
+    checkpoint();
   }
   const auto& g = sim.grains();
   for (int i = 0; i < g.size(); ++i) {

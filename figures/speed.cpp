@@ -116,7 +116,7 @@ Sample<Dim> run_lagrain(const Bed<Dim>& bed, const Plan& plan, N neighbourhood, 
                         const Checkpoint& checkpoint) {
   auto sim = simulate<Dim, N>(bed, std::move(neighbourhood));
   sim.measure_phases(true);
-  for (int s = 0; s < plan.warm_up; ++s) sim.step();
+  sim.step(plan.warm_up);
   checkpoint();
 
   Sample<Dim> sample;
@@ -128,7 +128,7 @@ Sample<Dim> run_lagrain(const Bed<Dim>& bed, const Plan& plan, N neighbourhood, 
   for (int part = 0; part < kAudits; ++part) {
     const int end = plan.steps * (part + 1) / kAudits;
     const double wall_before = wall_seconds(), before = processor_seconds();
-    for (int s = plan.steps * part / kAudits; s < end; ++s) sim.step();
+    sim.step(end - plan.steps * part / kAudits);
     sample.cpu += processor_seconds() - before;
     wall += wall_seconds() - wall_before;
     checkpoint();

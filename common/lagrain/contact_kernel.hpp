@@ -76,12 +76,15 @@ struct PairLoad {
 template <int Dim, class Law>
 struct ContactScene {
   const GrainRecord<Dim, Law::needs>* grains = nullptr;
-  LoadRecord<Dim, Law::needs>* loads = nullptr;
+  LoadRecord<Dim, Law::needs>* loads = nullptr;  ///< of the slots from first_slot on
   const std::vector<std::uint8_t>* kinds = nullptr;
   const LawTable<Law>* laws = nullptr;
   const Wall<Dim>* walls = nullptr;
   double time_step = 0;        ///< what memories and losses advance by [s]
   double largest_overlap = 0;  ///< of the smaller radius [-]
+  int first_slot = 0;
+
+  LoadRecord<Dim, Law::needs>& load(int slot) const { return loads[slot - first_slot]; }
 };
 
 template <int Dim, class Law>
@@ -397,8 +400,8 @@ struct Sweep {
       return;
     }
     for (std::size_t k = 0; k < kWidth; ++k) {
-      for_i.add_to(scene.loads[i[k]], k);
-      for_j.subtract_from(scene.loads[j[k]], k);
+      for_i.add_to(scene.load(i[k]), k);
+      for_j.subtract_from(scene.load(j[k]), k);
     }
   }
 
@@ -415,7 +418,7 @@ struct Sweep {
       const auto foot = wall.foot(scene.grains[slot].position());
       i[k] = slot;
       set_lane(distance, at, foot.distance);
-      set_lane(mass, at, scene.loads[slot].at[Load::kMass]);
+      set_lane(mass, at, scene.load(slot).at[Load::kMass]);
       for (int d = 0; d < Dim; ++d) {
         set_lane(normal[d], at, foot.normal[d]);
         set_lane(wall_velocity[d], at, wall.velocity[d]);
@@ -440,7 +443,7 @@ struct Sweep {
     }
     const LoadRows push(LoadColumns(response.force, turn));
     for (std::size_t k = 0; k < kWidth; ++k) {
-      push.add_to(scene.loads[i[k]], k);
+      push.add_to(scene.load(i[k]), k);
       wall_forces[table.pairs()[first + k].wall] -= Vec<Dim>::NullaryExpr(
           [&](Eigen::Index d) { return lane(response.force[d], static_cast<int>(k)); });
     }

@@ -4,9 +4,8 @@
 ///
 /// A step evaluates the forces kEvaluations times. Before evaluation k, `advance` brings place x
 /// and velocity v there; `finish` completes the step once the last forces are known. Both get the
-/// acceleration a by the forces evaluated last, and `old`, which advance may set and finish read.
-/// The simulation joins `finish` with the `advance` that follows, so that a step passes over the
-/// grains once. Spins are velocities whose angle x nobody asks for.
+/// acceleration a by the forces evaluated last, finish also the one before. Spins are velocities
+/// whose angle x nobody asks for.
 
 #include <array>
 #include <concepts>
@@ -17,10 +16,9 @@ template <class I>
 concept Integrator = requires(double& x, double a, double dt) {
   { I::kName } -> std::convertible_to<const char*>;
   { I::kConservativeOnly } -> std::convertible_to<bool>;
-  { I::kRemembersAcceleration } -> std::convertible_to<bool>;
   { I::kEvaluations } -> std::convertible_to<int>;
   { I::time_of(0) } -> std::convertible_to<double>;  // of evaluation k, in steps
-  I::template advance<double>(0, x, x, a, x, dt);
+  I::template advance<double>(0, x, x, a, dt);
   I::template finish<double>(x, x, a, a, dt);
 };
 
@@ -29,12 +27,11 @@ concept Integrator = requires(double& x, double a, double dt) {
 struct SymplecticEuler {
   static constexpr const char* kName = "symplectic Euler";
   static constexpr bool kConservativeOnly = false;
-  static constexpr bool kRemembersAcceleration = false;
   static constexpr int kEvaluations = 1;
   static constexpr double time_of(int) { return 1; }
 
   template <class V>
-  static void advance(int, V& x, V& v, const V& a, V&, double dt) {
+  static void advance(int, V& x, V& v, const V& a, double dt) {
     v += dt * a;
     x += dt * v;
   }
@@ -49,20 +46,18 @@ struct SymplecticEuler {
 struct VelocityVerlet {
   static constexpr const char* kName = "velocity Verlet";
   static constexpr bool kConservativeOnly = false;
-  static constexpr bool kRemembersAcceleration = true;
   static constexpr int kEvaluations = 1;
   static constexpr double time_of(int) { return 1; }
 
   template <class V>
-  static void advance(int, V& x, V& v, const V& a, V& old, double dt) {
+  static void advance(int, V& x, V& v, const V& a, double dt) {
     const V change = dt * a;
     x += dt * (v + 0.5 * change);
     v += change;
-    old = a;
   }
   template <class V>
-  static void finish(V&, V& v, const V& a, const V& old, double dt) {
-    v += (0.5 * dt) * (a - old);
+  static void finish(V&, V& v, const V& a, const V& before, double dt) {
+    v += (0.5 * dt) * (a - before);
   }
 };
 
@@ -72,7 +67,6 @@ struct VelocityVerlet {
 struct ForestRuth {
   static constexpr const char* kName = "Forest-Ruth (PEFRL)";
   static constexpr bool kConservativeOnly = true;
-  static constexpr bool kRemembersAcceleration = false;
   static constexpr int kEvaluations = 4;
   static constexpr double time_of(int evaluation) {
     double t = 0;
@@ -81,7 +75,7 @@ struct ForestRuth {
   }
 
   template <class V>
-  static void advance(int evaluation, V& x, V& v, const V& a, V&, double dt) {
+  static void advance(int evaluation, V& x, V& v, const V& a, double dt) {
     const auto k = static_cast<std::size_t>(evaluation);
     if (k > 0) v += (kKicks[k - 1] * dt) * a;
     x += (kDrifts[k] * dt) * v;

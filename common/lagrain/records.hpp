@@ -77,13 +77,12 @@ void fetch_ahead(const Record& record) {
   for (std::size_t k = 0; k < sizeof(Record); k += kLine) __builtin_prefetch(bytes + k);
 }
 
-/// Bytes that a step reads and writes of one grain in this model: its records, what velocity Verlet
-/// remembers, and where the near list saw it last. Several kinds add one byte.
+/// Bytes that a step reads and writes of one grain in this model: its records, and where the near
+/// list saw it last. Several kinds add one byte.
 template <int Dim, Needs needs>
 constexpr std::size_t bytes_per_grain() {
-  const std::size_t remembered = Dim + (needs.spin ? kSpinDim<Dim> : 0);
   return sizeof(GrainRecord<Dim, needs>) + sizeof(LoadRecord<Dim, needs>) +
-         sizeof(double) * (remembered + Dim + 1);
+         sizeof(double) * (Dim + 1);
 }
 
 namespace detail {

@@ -46,9 +46,9 @@ class Run {
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
 
-  /// One time step, then the audit if the scene asks for it.
+  /// So many time steps, each followed by the audit if the scene asks for it.
   /// @throws SimulationError if the physics went wrong
-  void step();
+  void step(std::int64_t count = 1);
   /// Steps until `time() >= t`, to half a time step.
   /// @throws SimulationError
   void advance_to(double t);
@@ -96,7 +96,7 @@ class Run {
   void started();
 
  private:
-  virtual void advance() = 0;
+  virtual void advance(std::int64_t count) = 0;
   /// Whether the near list holds for the places as they are; between the stages of a step it may
   /// just have expired.
   virtual bool near_is_valid() const = 0;

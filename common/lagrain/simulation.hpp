@@ -46,10 +46,11 @@ struct EnergyFlow {
 
 /// Wall-clock time spent so far [s]. What is done once per step is measured only if asked for.
 struct PhaseTimes {
-  double refresh = 0;      ///< of the near list, the triangulation's updates included
+  double refresh = 0;  ///< of the near list, the triangulation's updates included
+  // What the threads share is the mean over them.
   double integration = 0;  ///< with the test whether the near list still holds
-  double pairs = 0;        ///< contacts between grains; the mean over the threads
-  double walls = 0;        ///< contacts with walls; the mean over the threads
+  double pairs = 0;        ///< contacts between grains
+  double walls = 0;        ///< contacts with walls
 };
 
 /// A simulation composed at compile time: dimension, contact law (with or without friction),
@@ -92,26 +93,36 @@ class Simulation {
     if (Motion::kConservativeOnly) check_conservative();
     for (Wall<Dim>& wall : walls_) wall.advance(0, 0);
     store();
-    evaluate_forces(0);  // with force_step_ = 0: memories and energies do not advance
+    evaluate_forces(0, {});  // with force_step_ = 0: memories and energies do not advance
     force_step_ = Motion::kConservativeOnly ? 0 : setting_.time_step;
     flow_ = {};
     view_known_ = false;
   }
 
-  /// One time step.
-  /// @throws SimulationError if a grain is lost to NaN or two overlap beyond the limit.
-  void step() {
+  /// So many time steps; the same, bit for bit, whether they are asked for together or one by one.
+  /// Together they take less time where memory decides: nobody looks in between, so the grains of
+  /// a block move on as soon as their forces are known, while they are in the cache.
+  /// @throws SimulationError if a grain is lost to NaN or two overlap beyond the limit; the grains
+  ///         may be a step further by then.
+  void step(std::int64_t count = 1) {
     view_known_ = false;
-    if (steps_ % kStepsBetweenSorts == kStepsBetweenSorts - 1) sort_if_mixed();
-    const double start = time();
-    for (int k = 0; k < Motion::kEvaluations; ++k) {
-      const double t = Motion::time_of(k) * setting_.time_step;
-      for (Wall<Dim>& wall : walls_) wall.advance(start + t, t);
-      advance(k, start + t);
-      evaluate_forces(start + t);
+    bool moved = false;  // to where the next forces are wanted
+    for (; count > 0; --count) {
+      if (sort_is_due(steps_)) sort_if_mixed();
+      for (int k = 0; k < Motion::kEvaluations; ++k) {
+        const double t = instant(steps_, k);
+        for (Wall<Dim>& wall : walls_) wall.advance(t, Motion::time_of(k) * setting_.time_step);
+        if (!moved) move_all(k, t);
+        look_for_strays(t);
+        const bool ends = k + 1 == Motion::kEvaluations;
+        moved = !ends || (count > 1 && !sort_is_due(steps_ + 1));
+        evaluate_forces(t, {.finish = ends,
+                            .advance = moved,
+                            .evaluation = ends ? 0 : k + 1,
+                            .time = ends ? instant(steps_ + 1, 0) : instant(steps_, k + 1)});
+      }
+      ++steps_;
     }
-    unfinished_ = true;
-    ++steps_;
   }
 
   std::int64_t steps() const { return steps_; }
@@ -208,7 +219,6 @@ class Simulation {
   using Clock = std::chrono::steady_clock;
   using Record = GrainRecord<Dim, needs>;
   using Load = LoadRecord<Dim, needs>;
-  static constexpr bool kRemembers = Motion::kRemembersAcceleration;
 
   template <class F>
   void for_each_table(F&& f) const {
@@ -217,12 +227,6 @@ class Simulation {
       f(block.across);
     }
   }
-
-  /// What the integrator remembers of a grain.
-  struct Accelerations {
-    Vec<Dim> linear = Vec<Dim>::Zero();
-    [[no_unique_address]] std::conditional_t<needs.spin, SpinVec<Dim>, NoSpin> angular{};
-  };
 
   /// Below this number all grains fit into the cache in any order.
   static constexpr int kSortFrom = 1024;
@@ -254,7 +258,6 @@ class Simulation {
     if (g.size() > kSortFrom && g.position.allFinite()) numbers_ = spatial_order<Dim>(g.position);
     records_.resize(index(g.size()));
     loads_.resize(index(g.size()));
-    if constexpr (kRemembers) old_.resize(index(g.size()));
     radius_.resize(g.size());
     if (!g.kind.empty()) kinds_.resize(index(g.size()));
     for (int slot = 0; slot < g.size(); ++slot) {
@@ -272,25 +275,29 @@ class Simulation {
       if (!g.kind.empty()) kinds_[index(slot)] = g.kind[index(i)];
     }
     near_.reset(g.size(), std::max(kLeastBlock, (g.size() + kMostBlocks - 1) / kMostBlocks));
+    strays_.resize(near_.blocks().size());
   }
 
-  /// Puts the grains together by number, the step finished.
+  /// Puts the grains together by number.
   void look() const {
     State& g = view_;
     for (int slot = 0; slot < count(); ++slot) {
       const int i = number(slot);
+      const Record& record = records_[index(slot)];
       const Load& load = loads_[index(slot)];
-      Moving now(*this, slot);
-      if (unfinished_) now.finish(setting_.time_step);
-      g.position.col(i) = now.x;
-      g.velocity.col(i) = now.v;
+      g.position.col(i) = record.position();
+      g.velocity.col(i) = record.velocity();
       g.force.col(i) = load.force();
       if constexpr (needs.spin) {
-        g.omega.col(i) = now.omega;
+        g.omega.col(i) = record.omega();
         g.torque.col(i) = load.torque();
       }
     }
     view_known_ = true;
+  }
+
+  static bool sort_is_due(std::int64_t step) {
+    return step % kStepsBetweenSorts == kStepsBetweenSorts - 1;
   }
 
   /// Gives the grains new slots if neighbours in space lie far apart in memory. Judged by places
@@ -319,7 +326,6 @@ class Simulation {
     permute(loads_);
     permute(numbers_);
     permute(kinds_);
-    if constexpr (kRemembers) permute(old_);
     std::vector<int> slot_of(order.size());
     for (std::size_t k = 0; k < order.size(); ++k) {
       slot_of[index(order[k])] = static_cast<int>(k);
@@ -335,122 +341,170 @@ class Simulation {
     return x;
   }
 
-  /// f(block) for every block, shared by the threads. One thread alone does without OpenMP, whose
-  /// team of one takes a microsecond to call together.
+  /// f(block, thread) for every block, shared by the threads. One thread alone does without OpenMP,
+  /// whose team of one takes a microsecond to call together.
   template <class F>
   void for_each_block(F&& f) {
-    const std::size_t blocks = near_.blocks().size();
-    if (setting_.threads == 1) {
-      for (std::size_t block = 0; block < blocks; ++block) f(block);
+    const std::size_t blocks = near_.blocks().size(), threads = index(setting_.threads);
+    const auto share = [&](std::size_t thread) {
+      const std::size_t end = blocks * (thread + 1) / threads;
+      for (std::size_t block = blocks * thread / threads; block < end; ++block) f(block, thread);
+    };
+    if (threads == 1) {
+      share(0);
       return;
     }
-#pragma omp parallel for schedule(static) num_threads(setting_.threads)
-    for (std::size_t block = 0; block < blocks; ++block) f(block);
+#pragma omp parallel for schedule(static, 1) num_threads(setting_.threads)
+    for (std::size_t thread = 0; thread < threads; ++thread) share(thread);
   }
 
   // ---- Motion ----------------------------------------------------------------------------------
 
   /// A grain on its way through a step.
   struct Moving {
-    Vec<Dim> x, v, a, old;
-    SpinVec<Dim> angle, omega, alpha, old_alpha;  // nobody asks for the angle
+    Vec<Dim> x, v, a;
+    SpinVec<Dim> angle, omega, alpha;  // nobody asks for the angle
 
-    Moving(const Simulation& s, int slot) {
-      const Record& record = s.records_[index(slot)];
-      const Load& load = s.loads_[index(slot)];
-      x = record.position();
-      v = record.velocity();
-      a = record.at[Record::kInverseMass] * load.force();
-      if constexpr (kRemembers) old = s.old_[index(slot)].linear;
+    Moving(const Record& record, const Load& load)
+        : x(record.position()), v(record.velocity()), a(linear(record, load)) {
       if constexpr (needs.spin) {
         omega = record.omega();
-        alpha = record.at[Record::kInverseInertia] * load.torque();
+        alpha = angular(record, load);
         angle = omega;
-        if constexpr (kRemembers) old_alpha = s.old_[index(slot)].angular;
       }
     }
-    void finish(double dt) {
-      Motion::finish(x, v, a, old, dt);
-      if constexpr (needs.spin) Motion::finish(angle, omega, alpha, old_alpha, dt);
+    void finish(const Record& record, const Load& before, double dt) {
+      Motion::finish(x, v, a, linear(record, before), dt);
+      if constexpr (needs.spin) Motion::finish(angle, omega, alpha, angular(record, before), dt);
     }
     void advance(int evaluation, double dt) {
-      Motion::advance(evaluation, x, v, a, old, dt);
-      if constexpr (needs.spin) Motion::advance(evaluation, angle, omega, alpha, old_alpha, dt);
+      Motion::advance(evaluation, x, v, a, dt);
+      if constexpr (needs.spin) Motion::advance(evaluation, angle, omega, alpha, dt);
     }
-    void store(Simulation& s, int slot) const {
-      Record& record = s.records_[index(slot)];
+    void store(Record& record) const {
       record.position() = x;
       record.velocity() = v;
-      if constexpr (kRemembers) s.old_[index(slot)].linear = old;
-      if constexpr (needs.spin) {
-        record.omega() = omega;
-        if constexpr (kRemembers) s.old_[index(slot)].angular = old_alpha;
-      }
+      if constexpr (needs.spin) record.omega() = omega;
+    }
+
+   private:
+    static Vec<Dim> linear(const Record& record, const Load& load) {
+      return record.at[Record::kInverseMass] * load.force();
+    }
+    static SpinVec<Dim> angular(const Record& record, const Load& load) {
+      return record.at[Record::kInverseInertia] * load.torque();
     }
   };
 
-  /// Sets a load to the grain's weight.
-  void weigh(Load& load) const {
-    load.force() = load.at[Load::kMass] * setting_.gravity;
-    if constexpr (needs.spin) load.torque().setZero();
+  /// When the forces of an evaluation are wanted [s].
+  double instant(std::int64_t step, int evaluation) const {
+    return static_cast<double>(step) * setting_.time_step +
+           Motion::time_of(evaluation) * setting_.time_step;
   }
 
-  /// Finishes the last step if that is left to do, moves all grains to where the forces are wanted
-  /// next, and sees whether the near list holds there.
-  /// @param t  [s]
-  void advance(int evaluation, double t) {
+  /// What grains do once forces are known.
+  struct Then {
+    bool finish = false;   ///< the step
+    bool advance = false;  ///< to where the next forces are wanted
+    int evaluation = 0;    ///< which ones they are
+    double time = 0;       ///< and when [s]
+  };
+
+  /// Brings all grains to where the forces of an evaluation are wanted, at time t [s].
+  void move_all(int evaluation, double t) {
     const auto start = measuring_ ? Clock::now() : Clock::time_point{};
     const Vec<Dim> shift = near_.shift(t);
-    const bool listed = near_.fresh() && near_.walls_hold(walls_, shift);
-    strays_.resize(near_.blocks().size());
-    const auto pass = [&]<bool kFinish>() {
-      for_each_block([&](std::size_t block) {
-        const int end = near_.blocks()[block].end_slot;
-        strays_[block].clear();
-        for (int slot = near_.blocks()[block].first_slot; slot < end; ++slot) {
-          Moving grain(*this, slot);
-          if constexpr (kFinish) grain.finish(setting_.time_step);
-          grain.advance(evaluation, setting_.time_step);
-          grain.store(*this, slot);
-          if (listed && !near_.holds(slot, grain.x, shift)) strays_[block].push_back(slot);
-        }
-      });
-    };
-    if (unfinished_) {
-      pass.template operator()<true>();
-    } else {
-      pass.template operator()<false>();
-    }
-    unfinished_ = false;
-    near_holds_ = listed && std::all_of(strays_.begin(), strays_.end(),
-                                        [](const auto& list) { return list.empty(); });
+    for_each_block([&](std::size_t block, std::size_t) {
+      strays_[block].clear();
+      const int end = near_.blocks()[block].end_slot;
+      for (int slot = near_.blocks()[block].first_slot; slot < end; ++slot) {
+        Moving grain(records_[index(slot)], loads_[index(slot)]);
+        advance(grain, block, slot, evaluation, shift);
+        grain.store(records_[index(slot)]);
+      }
+    });
     if (measuring_) times_.integration += seconds(Clock::now() - start);
+  }
+
+  /// Also notes if the grain leaves its margin.
+  void advance(Moving& grain, std::size_t block, int slot, int evaluation, const Vec<Dim>& shift) {
+    grain.advance(evaluation, setting_.time_step);
+    if (near_.fresh() && !near_.holds(slot, grain.x, shift)) strays_[block].push_back(slot);
+  }
+
+  /// The grains of a block go on with the forces that act on them now.
+  void move_on(std::size_t block, const Load* now, const Then& then) {
+    const auto pass = [&]<bool kFinish, bool kAdvance>() {
+      const Vec<Dim> shift = near_.shift(then.time);
+      const int first = near_.blocks()[block].first_slot, end = near_.blocks()[block].end_slot;
+      if (kAdvance) strays_[block].clear();
+      for (int slot = first; slot < end; ++slot) {
+        Record& record = records_[index(slot)];
+        Load& load = loads_[index(slot)];  // as the step began
+        const Load& fresh = now[slot - first];
+        if constexpr (kFinish || kAdvance) {
+          Moving grain(record, fresh);
+          if constexpr (kFinish) grain.finish(record, load, setting_.time_step);
+          if constexpr (kAdvance) advance(grain, block, slot, then.evaluation, shift);
+          grain.store(record);
+        }
+        load = fresh;
+      }
+    };
+    if (then.finish && then.advance) {
+      pass.template operator()<true, true>();
+    } else if (then.finish) {
+      pass.template operator()<true, false>();
+    } else if (then.advance) {
+      pass.template operator()<false, true>();
+    } else {
+      pass.template operator()<false, false>();
+    }
+  }
+
+  /// Whether the near list holds where the grains and walls are at time t [s].
+  void look_for_strays(double t) {
+    near_holds_ =
+        near_.fresh() && near_.walls_hold(walls_, near_.shift(t)) &&
+        std::all_of(strays_.begin(), strays_.end(), [](const auto& list) { return list.empty(); });
   }
 
   // ---- Forces ----------------------------------------------------------------------------------
 
-  void evaluate_forces(double t) {
+  /// Forces where the grains are at time t [s]. Each block goes on once its own are known: nobody
+  /// else reads its places then.
+  void evaluate_forces(double t, const Then& then) {
     if (!near_holds_ || worth_narrowing()) refresh(t);
     const ContactScene<Dim, Law> scene{
-        records_.data(), loads_.data(),           &kinds_, &laws_, walls_.data(),
-        force_step_,     setting_.largest_overlap};
+        records_.data(),         nullptr, &kinds_, &laws_, walls_.data(), force_step_,
+        setting_.largest_overlap};
     const std::size_t blocks = near_.blocks().size();
     parts_.resize(blocks);
-    for (Part& part : parts_) part.pair_seconds = part.wall_seconds = 0;
+    for (Part& part : parts_) {
+      part.deepest = {};
+      part.pair_seconds = part.wall_seconds = part.move_seconds = 0;
+    }
     kept_.resize(near_.across_count());
     wall_parts_.assign(blocks * walls_.size(), Vec<Dim>::Zero());
     if (blocks > 1) {
-      for_each_block([&](std::size_t b) {
+      for_each_block([&](std::size_t b, std::size_t) {
         auto& block = near_.blocks()[b];
         Part& part = parts_[b];
         const auto start = measuring_ ? Clock::now() : Clock::time_point{};
         part.across = kernel_.pairs(scene, block.across, 0, block.across.size(),
                                     listing_for(block.across.size(), part.across.contacts),
                                     kept_.data() + block.first_across);
+        if (part.across.excess > 0) note_deepest(part.deepest, block.across);
         if (measuring_) part.pair_seconds += seconds(Clock::now() - start);
       });
     }
-    for_each_block([&](std::size_t block) { block_forces(scene, block); });
+    fresh_.resize(index(setting_.threads));
+    for_each_block([&](std::size_t block, std::size_t thread) {
+      block_forces(scene, block, fresh_[thread]);
+      const auto start = measuring_ ? Clock::now() : Clock::time_point{};
+      move_on(block, fresh_[thread].data(), then);
+      if (measuring_) parts_[block].move_seconds = seconds(Clock::now() - start);
+    });
 
     Tally total;
     for (const Part& part : parts_) total += part.across;
@@ -459,6 +513,7 @@ class Simulation {
       total += part.walls;
       times_.pairs += part.pair_seconds / setting_.threads;
       times_.walls += part.wall_seconds / setting_.threads;
+      times_.integration += part.move_seconds / setting_.threads;
     }
     flow_.dashpot += total.dashpot;
     flow_.friction += total.friction;
@@ -472,20 +527,30 @@ class Simulation {
     if (total.excess > 0) report_deep_overlap(t);
   }
 
-  /// All that adds to the loads of a block's grains, in a fixed order.
-  void block_forces(const ContactScene<Dim, Law>& scene, std::size_t b) {
+  /// Sets a load to the grain's weight.
+  void weigh(Load& load, double mass) const {
+    load.at[Load::kMass] = mass;
+    load.force() = mass * setting_.gravity;
+    if constexpr (needs.spin) load.torque().setZero();
+  }
+
+  /// All that adds up to the loads of a block's grains, in a fixed order.
+  void block_forces(ContactScene<Dim, Law> scene, std::size_t b, std::vector<Load>& fresh) {
     auto& block = near_.blocks()[b];
     Part& part = parts_[b];
     const auto start = measuring_ ? Clock::now() : Clock::time_point{};
+    fresh.resize(index(block.end_slot - block.first_slot));
+    scene.loads = fresh.data();
+    scene.first_slot = block.first_slot;
     for (int slot = block.first_slot; slot < block.end_slot; ++slot) {
-      weigh(loads_[index(slot)]);
+      weigh(scene.load(slot), loads_[index(slot)].at[Load::kMass]);
       fetch_ahead(records_[index(slot)]);
     }
     part.within = kernel_.pairs(scene, block.within, 0, block.within.size(),
                                 listing_for(block.within.size(), part.within.contacts));
     for (const auto& end : block.ends) {
       const PairLoad<Dim, needs>& both = kept_[end.pair];
-      Load& load = loads_[index(end.slot)];
+      Load& load = scene.load(end.slot);
       if (end.second()) {
         both.give_to_j(load);
       } else {
@@ -495,6 +560,8 @@ class Simulation {
     const auto between = measuring_ ? Clock::now() : Clock::time_point{};
     part.walls = kernel_.walls(scene, block.walls, 0, block.walls.size(),
                                wall_parts_.data() + b * walls_.size());
+    if (part.within.excess > 0) note_deepest(part.deepest, block.within);
+    if (part.walls.excess > 0) note_deepest(part.deepest, block.walls);
     if (!measuring_) return;
     part.pair_seconds += seconds(between - start);
     part.wall_seconds += seconds(Clock::now() - between);
@@ -533,27 +600,56 @@ class Simulation {
     return false;
   }
 
-  [[noreturn]] void report_deep_overlap(double t) {
-    unfinished_ = false;
-    double deepest = 0;
-    std::ostringstream what;
-    const auto note = [&](double ratio, int i, const std::string& partner) {
-      if (ratio <= deepest) return;
-      deepest = ratio;
-      what.str({});
-      what << "t = " << t << " s: grain " << i << " overlaps " << partner << " by " << ratio
-           << " of the smaller radius";
-    };
-    for_each_contact([&](Pair pair, const Touch<Dim>& touch, auto&&...) {
-      note(touch.overlap / std::min(view_.radius[pair.i], view_.radius[pair.j]),
-           std::min(pair.i, pair.j), "grain " + std::to_string(std::max(pair.i, pair.j)));
-    });
-    for_each_wall_contact([&](WallPair pair, const Touch<Dim>& touch, auto&&...) {
-      note(touch.overlap / view_.radius[pair.i], pair.i, "wall " + walls_[index(pair.wall)].name);
-    });
-    what << " (limit " << setting_.largest_overlap
-         << "); a stiffer contact, a smaller time step or a gentler start would help";
-    throw SimulationError(what.str());
+  /// An overlap that stops the run.
+  struct DeepOverlap {
+    double ratio = 0;  ///< of the smaller radius
+    int slot = -1;
+    int partner = -1;  ///< slot of the other grain, or wall
+    bool with_wall = false;
+  };
+
+  double overlap_ratio(const Pair& pair) const {
+    const Record &a = records_[index(pair.i)], &b = records_[index(pair.j)];
+    return (a.radius() + b.radius() - (a.position() - b.position()).norm()) /
+           std::min(a.radius(), b.radius());
+  }
+  double overlap_ratio(const WallPair& pair) const {
+    const Record& grain = records_[index(pair.i)];
+    return 1 - walls_[index(pair.wall)].foot(grain.position()).distance / grain.radius();
+  }
+  template <class P>
+  void note_deepest(DeepOverlap& deepest, const PairTable<P, Memory>& table) const {
+    for (const P& pair : table.pairs()) {
+      const double ratio = overlap_ratio(pair);
+      if (ratio <= deepest.ratio) continue;
+      if constexpr (std::is_same_v<P, WallPair>) {
+        deepest = {ratio, pair.i, pair.wall, true};
+      } else {
+        deepest = {ratio, pair.i, pair.j, false};
+      }
+    }
+  }
+
+  [[noreturn]] void report_deep_overlap(double t) const {
+    DeepOverlap deepest;
+    for (const Part& part : parts_) {
+      if (part.deepest.ratio > deepest.ratio) deepest = part.deepest;
+    }
+    const auto [ratio, slot, partner, with_wall] = deepest;
+    int grain = number(slot);
+    std::string other;
+    if (with_wall) {
+      other = "wall " + walls_[index(partner)].name;
+    } else {
+      const int second = number(partner);
+      other = "grain " + std::to_string(std::max(grain, second));
+      grain = std::min(grain, second);
+    }
+    std::ostringstream message;
+    message << "t = " << t << " s: grain " << grain << " overlaps " << other << " by " << ratio
+            << " of the smaller radius (limit " << setting_.largest_overlap
+            << "); a stiffer contact, a smaller time step or a gentler start would help";
+    throw SimulationError(message.str());
   }
 
   void check_finite() const {
@@ -602,15 +698,16 @@ class Simulation {
   /// What a block's sweeps added up. How many contacts there were is a guess for the next step.
   struct Part {
     Tally across, within, walls;
-    double pair_seconds = 0, wall_seconds = 0;
+    DeepOverlap deepest;
+    double pair_seconds = 0, wall_seconds = 0, move_seconds = 0;
   };
 
   mutable State view_;
   mutable bool view_known_ = false;
   std::vector<int> numbers_;  // of the grains in the slots; empty if they are the slots
   std::vector<Record> records_;
-  std::vector<Load> loads_;
-  std::vector<Accelerations> old_;
+  std::vector<Load> loads_;               // by the forces that were evaluated last
+  std::vector<std::vector<Load>> fresh_;  // of a block that a thread is at
   std::vector<std::uint8_t> kinds_;
   Eigen::VectorXd radius_;
 
@@ -621,7 +718,6 @@ class Simulation {
   ContactKernel<Dim, Law> kernel_;
   NearList<Dim, Memory> near_;
   bool near_holds_ = false;
-  bool unfinished_ = false;  // the integrator's last word on the step is still to be spoken
   EnergyFlow flow_;
   double force_step_ = 0;  // what memories and losses advance by in an evaluation [s]
   std::int64_t steps_ = 0;

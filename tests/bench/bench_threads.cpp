@@ -50,15 +50,12 @@ void two_threads(benchmark::State& state) {
   Sim first = simulate<Dim, TriangulationNeighbourhood<Dim>>(bed);
   Sim second = simulate<Dim, TriangulationNeighbourhood<Dim>>(bed);
   shared.use_threads(2);
-  const auto run = [](Sim& sim, int steps) {
-    for (int s = 0; s < steps; ++s) sim.step();
-  };
   std::vector<double> together, alone;
   const auto round = [&](int steps) {
-    together.push_back(seconds([&] { run(shared, steps); }));
+    together.push_back(seconds([&] { shared.step(steps); }));
     alone.push_back(seconds([&] {
-      std::thread other([&] { run(second, steps); });
-      run(first, steps);
+      std::thread other([&] { second.step(steps); });
+      first.step(steps);
       other.join();
     }));
   };

@@ -59,10 +59,10 @@ TEST_SUITE("grains") {
     CHECK(sizeof(LoadRecord<2, FrictionalSpring::needs>) == 8 * 4);
     CHECK(sizeof(LoadRecord<3, FrictionalSpring::needs>) == 8 * 8);
     // With the old accelerations, and the place and margin of the near list.
-    CHECK(bytes_per_grain<2, LinearSpring::needs>() == 48 + 32 + 16 + 24);
-    CHECK(bytes_per_grain<3, LinearSpring::needs>() == 64 + 32 + 24 + 32);
-    CHECK(bytes_per_grain<2, FrictionalSpring::needs>() == 64 + 32 + 24 + 24);
-    CHECK(bytes_per_grain<3, FrictionalSpring::needs>() == 96 + 64 + 48 + 32);
+    CHECK(bytes_per_grain<2, LinearSpring::needs>() == 48 + 32 + 24);
+    CHECK(bytes_per_grain<3, LinearSpring::needs>() == 64 + 32 + 32);
+    CHECK(bytes_per_grain<2, FrictionalSpring::needs>() == 64 + 32 + 24);
+    CHECK(bytes_per_grain<3, FrictionalSpring::needs>() == 96 + 64 + 32);
   }
 
   TEST_CASE("discs are rods of unit depth, spheres are spheres") {
