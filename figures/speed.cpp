@@ -261,12 +261,13 @@ class Harness {
     return plan;
   }
 
-  /// The same, through one whole period of shaking.
+  /// The same, through two whole periods of shaking, after one in which lists and skins settle.
   template <int Dim>
   Plan plan_of_period(const Bed<Dim>& bed, double radius) const {
     Plan plan = plan_for(bed.count(), 3e6);
-    const double steps = shake_period(radius) / bed.setting.time_step;
-    plan.steps = static_cast<int>(std::lround(steps)) / (quick() ? 8 : 1);
+    const double period = shake_period(radius) / bed.setting.time_step;
+    plan.warm_up = static_cast<int>(std::lround(period)) / (quick() ? 16 : 1);
+    plan.steps = 2 * plan.warm_up;
     return plan;
   }
 

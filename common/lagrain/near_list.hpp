@@ -7,6 +7,7 @@
 #include <lagrain/walls.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -153,6 +154,7 @@ class NearList {
         !neighbourhood.pairs_of(strays, place_here, radius, margin_, fresh_)) {
       return false;
     }
+    std::erase_if(fresh_, [&](const Pair& pair) { return surely_listed(pair, radius); });
     for (const int i : strays) stay(i, place_here(i));
     bool ends_change = false;
     for (const Pair& pair : fresh_) {
@@ -275,6 +277,13 @@ class NearList {
   void stay(int i, const Vec<Dim>& x) {
     const double margin = margin_[i] * kHair;
     stay_[index(i)] = {x, margin * margin};
+  }
+
+  /// Whether two grains were within reach when they were centred last: then their pair is listed.
+  bool surely_listed(const Pair& pair, const Eigen::VectorXd& radius) const {
+    const Stay &a = stay_[index(pair.i)], &b = stay_[index(pair.j)];
+    return within_reach<Dim>(a.centre, radius[pair.i] + std::sqrt(a.squared_margin), b.centre,
+                             radius[pair.j] + std::sqrt(b.squared_margin));
   }
 
   template <class P>

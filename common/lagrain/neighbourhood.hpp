@@ -19,7 +19,12 @@ namespace lagrain {
 struct Pair {
   int i = 0;
   int j = 0;
-  auto operator<=>(const Pair&) const = default;
+  bool operator==(const Pair&) const = default;
+  /// One comparison instead of two: tables of pairs are searched and sorted all the time.
+  auto operator<=>(const Pair& other) const { return key() <=> other.key(); }
+
+ private:
+  std::int64_t key() const { return (std::int64_t{i} << 32) + j; }
 };
 
 /// Sorts pairs of numbers from 0 to n - 1, by counting: once by j, then by i.

@@ -62,7 +62,7 @@ struct TriangulationCost {
 ///
 /// Where many grains fly, or a few very far, all these moves cost more than to build T anew, and
 /// wider skins make both rarer. They leave the certificate behind. So when moves have cost as much
-/// as one build, T *leaps*: it is built with skins wider than the grains, and the pairs of
+/// as one build, T *leaps*: it is built with wide skins, and the pairs of
 /// reference spheres that meet are listed by walking in it, which asks for no certificate
 /// (ReachList). Until the next leap T stays as it is; grains that leave their wide skins find their
 /// partners by such walks as well. When the grains have calmed down T follows them again.
@@ -470,22 +470,22 @@ class TriangulationNeighbourhood {
   }
 
   static constexpr int kRounds = 3;
-  static constexpr double kMostSkin = 2;      // of a grain's radius
-  static constexpr double kLeastSkin = 0.02;  // of the smallest radius around
-  static constexpr double kSmallSkin = 0.24;  // of the same: below (3 sqrt 2 - 4)
-  static constexpr double kMostAhead = 0.7;   // of a skin
-  static constexpr double kTooLittle = 0.25;  // of a fair share
-  static constexpr double kHair = 1e-7;       // of a skin
-  static constexpr double kWideSkin = 1.5;    // of the smallest radius around
-  static constexpr double kFast = 0.01;       // of a radius, that a grain wants as margin
-  static constexpr int kFewest = 10;          // of so many grains at most one is fast in a calm bed
-  static constexpr int kCalm = 5;             // questions in which it is, and none left its skin
+  static constexpr double kMostSkin = 2;                     // of a grain's radius
+  static constexpr double kLeastSkin = 0.02;                 // of the smallest radius around
+  static constexpr double kSmallSkin = 0.24;                 // of the same: below (3 sqrt 2 - 4)
+  static constexpr double kMostAhead = 0.7;                  // of a skin
+  static constexpr double kTooLittle = 0.25;                 // of a fair share
+  static constexpr double kHair = 1e-7;                      // of a skin
+  static constexpr double kWideSkin = Dim == 2 ? 2.0 : 1.0;  // of the smallest radius around
+  static constexpr double kFast = 0.01;  // of a radius, that a grain wants as margin
+  static constexpr int kFewest = 10;     // of so many grains at most one is fast in a calm bed
+  static constexpr int kCalm = 5;        // questions in which it is, and none left its skin
   /// Roughly what things cost [ns]: to move a reference in T, more if it had to be taken out; to
   /// find the partners of a grain by a walk, and to compare it with one that stands apart; and a
   /// leap, for each grain.
   static constexpr std::int64_t kMove = Dim == 2 ? 800 : 6000;
   static constexpr std::int64_t kExtraction = Dim == 2 ? 5000 : 90000;
-  static constexpr std::int64_t kWalk = Dim == 2 ? 1500 : 8000;
+  static constexpr std::int64_t kWalk = Dim == 2 ? 3000 : 8000;
   static constexpr std::int64_t kComparison = 2;
   static constexpr std::int64_t kLeap = Dim == 2 ? 3000 : 8000;
 
