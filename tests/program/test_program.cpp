@@ -186,7 +186,7 @@ TEST_SUITE("program") {
     CHECK(content(place / "a/frames/0001.csv") == content(place / "b/frames/0001.csv"));
     CHECK(content(place / "a/frames/0001.csv") == content(place / "c/frames/0001.csv"));
     CHECK(holds(place.out(), "dimension       3\n"));
-    CHECK(holds(place.out(), "bytes per grain 240, 88 of them for spin\n"));
+    CHECK(holds(place.out(), "bytes per grain 192, 64 of them for spin\n"));
   }
 
   TEST_CASE("a missing scene, an unwritable folder and a wrong flag are exit code 2") {
@@ -268,11 +268,11 @@ TEST_SUITE("program") {
       CAPTURE(part);
       CHECK(holds(rough, part));
     }
-    CHECK(holds(rough, "bytes per grain 144, 24 of them for spin\n"));
+    CHECK(holds(rough, "bytes per grain 120, 16 of them for spin\n"));
     CHECK(holds(rough, "bytes per pair  24, 16 of them for memory\n"));
-    CHECK(holds(smooth, "bytes per grain 120\n"));
+    CHECK(holds(smooth, "bytes per grain 104\n"));
     CHECK(holds(smooth, "bytes per pair  8\n"));
-    CHECK(holds(smooth, "> none           120         0           8           0\n"));
+    CHECK(holds(smooth, "> none           104         0           8           0\n"));
     CHECK(!fs::exists(place / "runs"));
   }
 
