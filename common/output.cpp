@@ -182,13 +182,15 @@ class Recorder {
  private:
   static constexpr std::int64_t kSnapshotEvery = 64;  // steps
 
-  /// As many as pass without a snapshot, a frame or a sample, and without keeping whoever wants to
-  /// interrupt waiting.
+  /// One where all grains lie in the cache, which nothing is gained for. Else as many as pass
+  /// without a snapshot, a frame or a sample, and without keeping whoever interrupts waiting.
   std::int64_t steps_at_once() const {
+    constexpr int kInCache = 10'000;
     constexpr std::int64_t kGrainSteps = 4'000'000;
+    if (run_.count() <= kInCache) return 1;
     const std::int64_t snapshot = (run_.steps() / kSnapshotEvery + 1) * kSnapshotEvery;
     const std::int64_t due = std::min({snapshot, next_frame_, next_sample_, run_.steps_planned()});
-    return std::clamp<std::int64_t>(kGrainSteps / std::max(1, run_.count()), 1, due - run_.steps());
+    return std::clamp<std::int64_t>(kGrainSteps / run_.count(), 1, due - run_.steps());
   }
 
   /// The step of the k-th frame or sample. One that would come a step before the end is the last.
