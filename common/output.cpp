@@ -186,7 +186,7 @@ class Recorder {
   /// without a snapshot, a frame or a sample, and without keeping whoever interrupts waiting.
   std::int64_t steps_at_once() const {
     constexpr int kInCache = 10'000;
-    constexpr std::int64_t kGrainSteps = 4'000'000;
+    constexpr std::int64_t kGrainSteps = 16'000'000;
     if (run_.count() <= kInCache) return 1;
     const std::int64_t snapshot = (run_.steps() / kSnapshotEvery + 1) * kSnapshotEvery;
     const std::int64_t due = std::min({snapshot, next_frame_, next_sample_, run_.steps_planned()});

@@ -8,6 +8,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -172,6 +173,32 @@ TEST_SUITE("run") {
     CHECK(run->steps() == 30);
     CHECK(content(folder.path / "frames/0001.csv") == frame_csv(*run));
     CHECK(content(folder.path / "summary.txt").find("stopped by the user") != std::string::npos);
+  }
+
+  TEST_CASE_TEMPLATE(
+      "a run of very many grains looks up seldom, and records the same as one step by step", S,
+      Space<2>, Space<3>) {
+    const std::string text =
+        with(with(with(kHeap, "count = 12", "count = 10500"), "\"0.1 m\"", "\"30 m\""),
+             "duration = \"20 ms\"", "duration = \"2 ms\"") +
+        "[output]\nframes_every = \"0.5 ms\"\nseries_every = \"0.5 ms\"\n";
+    const Folder folder;
+    int looks = 0;
+    REQUIRE(
+        record(*make_run(scene_of<S::Dim>(text)), {folder.path, [&] { return ++looks < 0; }, {}}));
+
+    const auto run = make_run(scene_of<S::Dim>(text));
+    REQUIRE(run->count() > 10000);
+    for (int frame = 0; frame <= 4; ++frame) {
+      const auto due =
+          frame < 4 ? std::llround(frame * 0.5e-3 / run->time_step()) : run->steps_planned();
+      while (run->steps() < due) run->step();
+      CAPTURE(frame);
+      const bool same =
+          content(folder.path / ("frames/000" + std::to_string(frame) + ".csv")) == frame_csv(*run);
+      CHECK(same);
+    }
+    CHECK(looks < run->steps() / 4);
   }
 
   TEST_CASE_TEMPLATE("a run that breaks off says who, when and why, and keeps the last good state",
