@@ -3,9 +3,12 @@
 #include <lagrain/output.hpp>
 
 #include <fcntl.h>
+#include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -71,6 +74,8 @@ std::string wiggle(const Bed<Dim>& bed) {
          shortest(1 / motion->frequency);
 }
 
+constexpr const char* kLoopTime = "Loop time of ";
+
 /// The first number after `label` in `text`, searched from the end.
 double number_after(const std::string& text, const std::string& label) {
   const std::size_t at = text.rfind(label);
@@ -85,46 +90,37 @@ std::string content(const fs::path& file) {
   return text.str();
 }
 
-/// Runs a program in a folder with one thread, its output going nowhere; it shares our Ctrl-C.
-int run_in(const fs::path& folder, const std::vector<std::string>& words) {
-  std::vector<char*> argv;
-  for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
-  argv.push_back(nullptr);
-  const pid_t child = fork();
-  if (child == 0) {
-    setenv("OMP_NUM_THREADS", "1", 1);
-    const int nowhere = open("/dev/null", O_RDWR);
-    for (int stream = 0; stream < 3; ++stream) dup2(nowhere, stream);
-    if (chdir(folder.c_str()) != 0) _exit(99);
-    execv(argv.front(), argv.data());
-    _exit(98);
-  }
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-/// "Pair | min | avg | max | ..." of the last run, as far as it is there.
-std::vector<std::pair<std::string, double>> breakdown(const std::string& log) {
+/// What LAMMPS logs of one run: "Loop time of 1.2 on 1 procs ...", "98.7% CPU use with ...", and a
+/// table "Pair | min | avg | max | ...".
+struct LoopTimes {
+  double wall = 0;  // [s]
+  double cpu = 0;   // [s]
   std::vector<std::pair<std::string, double>> phases;
-  const std::size_t at = log.rfind("MPI task timing breakdown");
-  if (at == std::string::npos) return phases;
-  std::istringstream lines(log.substr(at));
-  std::string line;
-  std::getline(lines, line);  // two lines of headings and a rule
-  std::getline(lines, line);
-  std::getline(lines, line);
-  while (std::getline(lines, line) && line.find('|') != std::string::npos) {
-    std::istringstream fields(line);
+};
+
+/// @param log from "Loop time of" on
+LoopTimes loop_times(const std::string& log) {
+  LoopTimes times;
+  times.wall = number_after(log, kLoopTime);
+  const std::size_t use = log.find("% CPU use");
+  const std::size_t line = use == std::string::npos ? use : log.rfind('\n', use);
+  const double share = line == std::string::npos ? 100 : std::strtod(&log[line + 1], nullptr);
+  times.cpu = times.wall * share / 100;
+  const std::size_t table = log.find("MPI task timing breakdown");
+  if (table == std::string::npos) return times;
+  std::istringstream lines(log.substr(table));
+  std::string text;
+  for (int heading = 0; heading < 3; ++heading) std::getline(lines, text);
+  while (std::getline(lines, text) && text.find('|') != std::string::npos) {
+    std::istringstream fields(text);
     std::string name, number;
     std::getline(fields, name, '|');
     std::getline(fields, number, '|');
     std::getline(fields, number, '|');
     name.erase(name.find_last_not_of(' ') + 1);
-    phases.emplace_back(name, std::strtod(number.c_str(), nullptr));
+    times.phases.emplace_back(name, std::strtod(number.c_str(), nullptr));
   }
-  return phases;
+  return times;
 }
 
 template <int Dim>
@@ -268,8 +264,11 @@ std::string lammps_input(const Bed<Dim>& bed, const LammpsPlan& plan) {
   }
   if (Dim == 2) text += "fix flat all enforce2d\n";
   text += "thermo_style custom step ke\nthermo 1000000\n";
-  if (plan.warm_up > 0) text += "run " + std::to_string(plan.warm_up) + "\n";
-  text += "run " + std::to_string(plan.steps) + "\n";
+  // Whoever takes turns with others has it paused, before the measured steps and between them.
+  text += "variable pause index \"print ''\"\n";
+  text += "run " + std::to_string(plan.warm_up) + "\n${pause}\n";
+  text += "run " + std::to_string(plan.steps) + " pre no every " +
+          std::to_string(plan.steps / plan.turns) + " \"${pause}\"\n";
   text +=
       std::string("write_dump all custom end.dump id x y z vx vy vz modify format float %.17g") +
       " sort id\n";
@@ -277,33 +276,104 @@ std::string lammps_input(const Bed<Dim>& bed, const LammpsPlan& plan) {
 }
 
 template <int Dim>
-LammpsReport<Dim> run_lammps(const fs::path& program, const fs::path& folder, const Bed<Dim>& bed,
-                             const LammpsPlan& plan) {
-  make_folder(folder);
-  write_file(folder / "data.lammps", lammps_data<Dim>(bed));
-  write_file(folder / "in.lammps", lammps_input<Dim>(bed, plan));
-  const int code = run_in(
-      folder, {program.string(), "-in", "in.lammps", "-log", "log.lammps", "-screen", "none"});
-  const std::string log = content(folder / "log.lammps");
-  if (code != 0) {
+LammpsRun<Dim>::LammpsRun(const fs::path& program, fs::path folder, const Bed<Dim>& bed,
+                          const LammpsPlan& plan)
+    : folder_(std::move(folder)), count_(bed.count()), turns_(plan.turns) {
+  make_folder(folder_);
+  write_file(folder_ / "data.lammps", lammps_data<Dim>(bed));
+  write_file(folder_ / "in.lammps", lammps_input<Dim>(bed, plan));
+  process_ = fork();
+  if (process_ < 0) throw SimulationError("LAMMPS cannot be started");
+  if (process_ == 0) {
+    setenv("OMP_NUM_THREADS", "1", 1);
+    const int nowhere = open("/dev/null", O_RDWR);
+    for (int stream = 0; stream < 3; ++stream) dup2(nowhere, stream);
+    if (chdir(folder_.c_str()) != 0) _exit(99);
+    // It shares our Ctrl-C, and does not outlive us while it is stopped.
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    const std::string pause = "shell kill -STOP " + std::to_string(getpid());
+    execl(program.c_str(), program.c_str(), "-in", "in.lammps", "-log", "log.lammps", "-screen",
+          "none", "-var", "pause", pause.c_str(), nullptr);
+    _exit(98);
+  }
+  wait_for_pause();
+}
+
+template <int Dim>
+LammpsRun<Dim>::~LammpsRun() {
+  if (process_ <= 0) return;
+  kill(process_, SIGKILL);
+  while (waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
+  }
+}
+
+template <int Dim>
+void LammpsRun<Dim>::take_turn() {
+  kill(process_, SIGCONT);
+  wait_for_pause();
+}
+
+/// Waits until the process has paused or ended.
+/// @returns whether it has paused
+template <int Dim>
+bool LammpsRun<Dim>::pauses() {
+  for (;;) {
+    int status = 0;
+    if (waitpid(process_, &status, WUNTRACED) < 0) continue;  // a signal of our own
+    if (WIFSTOPPED(status)) {
+      if (WSTOPSIG(status) == SIGSTOP) return true;
+      continue;  // Ctrl-Z, for both of us
+    }
+    process_ = 0;
+    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    if (code == 0) return false;
+    const std::string log = content(folder_ / "log.lammps");
     const std::size_t at = log.find("ERROR");
     throw SimulationError(
         "LAMMPS ended with code " + std::to_string(code) +
         (at == std::string::npos ? "" : ": " + log.substr(at, log.find('\n', at) - at)));
   }
+}
+
+template <int Dim>
+void LammpsRun<Dim>::wait_for_pause() {
+  if (!pauses()) throw SimulationError("LAMMPS ended too early");
+}
+
+template <int Dim>
+LammpsReport<Dim> LammpsRun<Dim>::finish() {
+  kill(process_, SIGCONT);
+  if (pauses()) throw SimulationError("LAMMPS does not end");
+  const std::string log = content(folder_ / "log.lammps");
   LammpsReport<Dim> report;
-  report.wall_seconds = number_after(log, "Loop time of ");
-  // "98.7% CPU use with ..." follows the times: the number stands before its name.
-  const std::size_t use = log.rfind("% CPU use");
-  const std::size_t line = use == std::string::npos ? use : log.rfind('\n', use);
-  const double share = line == std::string::npos ? 100 : std::strtod(&log[line + 1], nullptr);
-  report.cpu_seconds = report.wall_seconds * share / 100;
-  report.phases = breakdown(log);
+  std::size_t end = std::string::npos;
+  for (int turn = 0; turn < turns_; ++turn) {
+    const std::size_t begin = log.rfind(kLoopTime, end - 1);
+    if (begin == std::string::npos) throw SimulationError("LAMMPS has lost a turn");
+    const LoopTimes times = loop_times(log.substr(begin, end - begin));
+    report.wall_seconds += times.wall;
+    report.cpu_seconds += times.cpu;
+    for (const auto& [name, seconds] : times.phases) {
+      const auto known = std::find_if(report.phases.begin(), report.phases.end(),
+                                      [&, &n = name](const auto& p) { return p.first == n; });
+      if (known == report.phases.end()) {
+        report.phases.emplace_back(name, seconds);
+      } else {
+        known->second += seconds;
+      }
+    }
+    end = begin;
+  }
   report.neighbours = static_cast<std::int64_t>(number_after(log, "Total # of neighbors = "));
-  report.builds = static_cast<std::int64_t>(number_after(log, "Neighbor list builds = "));
-  report.dangerous = static_cast<std::int64_t>(number_after(log, "Dangerous builds = "));
-  read_dump<Dim>(folder / "end.dump", bed.count(), report);
-  fs::remove(folder / "end.dump");
+  // It counts these from its first step on.
+  const std::string before = log.substr(0, end);
+  const auto counted = [&](const char* label) {
+    return static_cast<std::int64_t>(number_after(log, label) - number_after(before, label));
+  };
+  report.builds = counted("Neighbor list builds = ");
+  report.dangerous = counted("Dangerous builds = ");
+  read_dump<Dim>(folder_ / "end.dump", count_, report);
+  fs::remove(folder_ / "end.dump");
   return report;
 }
 
@@ -313,9 +383,7 @@ template std::string lammps_data<2>(const Bed<2>&);
 template std::string lammps_data<3>(const Bed<3>&);
 template std::string lammps_input<2>(const Bed<2>&, const LammpsPlan&);
 template std::string lammps_input<3>(const Bed<3>&, const LammpsPlan&);
-template LammpsReport<2> run_lammps<2>(const fs::path&, const fs::path&, const Bed<2>&,
-                                       const LammpsPlan&);
-template LammpsReport<3> run_lammps<3>(const fs::path&, const fs::path&, const Bed<3>&,
-                                       const LammpsPlan&);
+template class LammpsRun<2>;
+template class LammpsRun<3>;
 
 }  // namespace lagrain::bench

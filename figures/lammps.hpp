@@ -9,6 +9,8 @@
 
 #include "beds.hpp"
 
+#include <sys/types.h>
+
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -21,7 +23,8 @@ namespace lagrain::bench {
 /// How long LAMMPS runs and how it looks for neighbours.
 struct LammpsPlan {
   int warm_up = 0;     ///< steps that are not measured
-  int steps = 0;       ///< steps that are
+  int steps = 0;       ///< steps that are, in so many
+  int turns = 1;       ///< equal parts
   bool multi = false;  ///< neighbour bins by atom type: needs sizes sorted into types, as we do
 };
 
@@ -61,11 +64,32 @@ std::string lammps_data(const Bed<Dim>& bed);
 template <int Dim>
 std::string lammps_input(const Bed<Dim>& bed, const LammpsPlan& plan);
 
-/// Runs LAMMPS on one core in `folder`, where data.lammps and in.lammps stay for the reader.
-/// @throws SimulationError if it fails, with its own words
+/// LAMMPS on one core in a folder, where data.lammps and in.lammps stay for the reader. It takes
+/// turns with others: between them its process is stopped.
 template <int Dim>
-LammpsReport<Dim> run_lammps(const std::filesystem::path& program,
-                             const std::filesystem::path& folder, const Bed<Dim>& bed,
-                             const LammpsPlan& plan);
+class LammpsRun {
+ public:
+  /// Returns when the steps that are not measured are done.
+  /// @throws SimulationError if LAMMPS fails, with its own words; so do the others
+  LammpsRun(const std::filesystem::path& program, std::filesystem::path folder, const Bed<Dim>& bed,
+            const LammpsPlan& plan);
+  LammpsRun(const LammpsRun&) = delete;
+  LammpsRun& operator=(const LammpsRun&) = delete;
+  ~LammpsRun();
+
+  /// The next part of the measured steps.
+  void take_turn();
+  /// @pre all turns are taken
+  LammpsReport<Dim> finish();
+
+ private:
+  bool pauses();
+  void wait_for_pause();
+
+  std::filesystem::path folder_;
+  int count_;
+  int turns_;
+  pid_t process_ = 0;  // 0 when it has ended
+};
 
 }  // namespace lagrain::bench

@@ -35,7 +35,7 @@ struct Column {
 
 double over_triangulation(const SceneSpeed& scene, const Contender& contender) {
   const Contender* ours = scene.find(kTriangulation);
-  return ours != nullptr && !ours->ns.empty() ? contender.median() / ours->median() : kUnknown;
+  return ours != nullptr ? ratio(contender, *ours) : kUnknown;
 }
 
 const std::vector<Column>& columns() {
@@ -182,7 +182,7 @@ std::string summary_table(const SpeedResults& results) {
     }
     const Contender* ours = scene.find(kTriangulation);
     const auto over = [&](const Contender* other) {
-      return ours && other ? cell(ours->median() / other->median(), 3) : std::string();
+      return ours && other ? cell(ratio(*ours, *other), 3) : std::string();
     };
     // Against LAMMPS as it is fastest.
     const Contender* bin = scene.find(kLammps);
@@ -240,11 +240,11 @@ std::string phase_table(const SpeedResults& results) {
 constexpr const char* kHowToRead =
     "Every number on this page comes from one run of the program on the machine named below. On "
     "each "
-    "scene all contenders get the same state and take turns for several rounds; times are medians "
-    "of "
-    "the processor time of one core, the spread is the largest less the smallest, and the errors "
-    "are "
-    "those of the first of these runs. The law is the same everywhere: a linear spring and "
+    "scene all contenders get the same state and go through the same steps in several rounds, a "
+    "twelfth of a round each in turn, because a machine's moods last a second; times are medians "
+    "over the rounds of the processor time of one core, ratios are medians of those of each round, "
+    "the spread is the largest time less the smallest, and the errors are those of the first "
+    "round. The law is the same everywhere: a linear spring and "
     "dashpot, "
     "friction with a tangential spring, coefficient 0.5, frictional walls. The oracle is handed "
     "exactly "

@@ -23,7 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kRounds = 3;
-constexpr int kAudits = 4;  // in the course of the measured steps
+constexpr int kTurns = 12;  // that the measured steps of a round are taken in
+constexpr int kAudits = 4;  // in the course of them
+static_assert(kTurns % kAudits == 0);
 
 double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -43,7 +45,7 @@ std::vector<Phase> phases_so_far(const Sim& sim) {
 /// How many steps, and who takes part.
 struct Plan {
   int warm_up = 0;
-  int steps = 0;
+  int steps = 0;  ///< a multiple of kTurns
   int rounds = kRounds;
   bool oracle = true;
   bool rebuilt = true;
@@ -109,54 +111,84 @@ std::vector<Phase> per_grain_step(const std::vector<Phase>& spent, double wall, 
   return phases;
 }
 
-/// Runs lagrain with a neighbourhood.
-/// @param careful measure the errors too, outside of the measured time
+/// A run of lagrain, to be taken in turns with others.
+template <int Dim>
+class TurnTaker {
+ public:
+  virtual ~TurnTaker() = default;
+  /// The next part of the measured steps.
+  virtual void take_turn(int part) = 0;
+  /// @pre all turns are taken
+  virtual Sample<Dim> sample() = 0;
+};
+
 template <int Dim, class N>
-Sample<Dim> run_lagrain(const Bed<Dim>& bed, const Plan& plan, N neighbourhood, bool careful,
-                        const Checkpoint& checkpoint) {
-  auto sim = simulate<Dim, N>(bed, std::move(neighbourhood));
-  sim.measure_phases(true);
-  sim.step(plan.warm_up);
-  checkpoint();
-
-  Sample<Dim> sample;
-  ContactAudit<Dim> audit;
-  const Ledger start = careful ? energy_ledger(sim) : Ledger{};
-  const auto refreshes = sim.refreshes();
-  std::vector<Phase> spent = phases_so_far(sim);
-  double wall = 0, near = 0;
-  for (int part = 0; part < kAudits; ++part) {
-    const int end = plan.steps * (part + 1) / kAudits;
-    const double wall_before = wall_seconds(), before = processor_seconds();
-    sim.step(end - plan.steps * part / kAudits);
-    sample.cpu += processor_seconds() - before;
-    wall += wall_seconds() - wall_before;
-    checkpoint();
-    if (!careful) continue;
-    const std::vector<Pair> pairs = sim.near_pairs();
-    audit.check(sim.grains().position, sim.grains().radius, pairs);
-    near = static_cast<double>(pairs.size());
+class LagrainRun : public TurnTaker<Dim> {
+ public:
+  /// Takes the steps before those that are measured.
+  /// @param careful measure the errors too, outside of the measured time
+  LagrainRun(const Bed<Dim>& bed, const Plan& plan, N neighbourhood, bool careful)
+      : bed_(bed),
+        plan_(plan),
+        careful_(careful),
+        sim_(simulate<Dim, N>(bed, std::move(neighbourhood))) {
+    sim_.measure_phases(true);
+    sim_.step(plan.warm_up);
+    if (careful) start_ = energy_ledger(sim_);
+    refreshes_ = sim_.refreshes();
+    before_ = phases_so_far(sim_);
   }
-  const std::vector<Phase> now = phases_so_far(sim);
-  for (std::size_t k = 0; k < spent.size(); ++k) spent[k].ns = now[k].ns - spent[k].ns;
-  const double grain_steps = static_cast<double>(bed.count()) * plan.steps;
-  sample.phases = per_grain_step(spent, wall, sample.cpu, grain_steps);
-  sample.position = sim.grains().position;
-  if (!careful) return sample;
 
-  RunErrors& errors = sample.errors;
-  examine<Dim>(bed, sim.grains().position, sim.grains().velocity, errors);
-  errors.missed = static_cast<double>(audit.missed());
-  errors.audited = static_cast<double>(audit.contacts());
-  const Ledger end = energy_ledger(sim);
-  const double turnover =
-      std::max({end.kinetic + end.elastic,
-                end.dashpot + end.friction - start.dashpot - start.friction, 1e-300});
-  errors.energy_residual = residual(end, start) / turnover;
-  errors.near_per_contact = near / (errors.contacts_per_grain * bed.count());
-  errors.refreshes = 1000 * static_cast<double>(sim.refreshes() - refreshes) / plan.steps;
-  return sample;
-}
+  void take_turn(int part) override {
+    const double wall = wall_seconds(), cpu = processor_seconds();
+    sim_.step(plan_.steps / kTurns);
+    cpu_ += processor_seconds() - cpu;
+    wall_ += wall_seconds() - wall;
+    if (!careful_ || (part + 1) % (kTurns / kAudits) != 0) return;
+    const std::vector<Pair> pairs = sim_.near_pairs();
+    audit_.check(sim_.grains().position, sim_.grains().radius, pairs);
+    near_ = static_cast<double>(pairs.size());
+  }
+
+  Sample<Dim> sample() override {
+    Sample<Dim> sample;
+    sample.cpu = cpu_;
+    std::vector<Phase> spent = phases_so_far(sim_);
+    for (std::size_t k = 0; k < spent.size(); ++k) spent[k].ns -= before_[k].ns;
+    sample.phases =
+        per_grain_step(spent, wall_, cpu_, static_cast<double>(bed_.count()) * plan_.steps);
+    sample.position = sim_.grains().position;
+    if (careful_) sample.errors = errors();
+    return sample;
+  }
+
+ private:
+  RunErrors errors() const {
+    RunErrors errors;
+    examine<Dim>(bed_, sim_.grains().position, sim_.grains().velocity, errors);
+    errors.missed = static_cast<double>(audit_.missed());
+    errors.audited = static_cast<double>(audit_.contacts());
+    const Ledger end = energy_ledger(sim_);
+    const double turnover =
+        std::max({end.kinetic + end.elastic,
+                  end.dashpot + end.friction - start_.dashpot - start_.friction, 1e-300});
+    errors.energy_residual = residual(end, start_) / turnover;
+    errors.near_per_contact = near_ / (errors.contacts_per_grain * bed_.count());
+    errors.refreshes = 1000 * static_cast<double>(sim_.refreshes() - refreshes_) / plan_.steps;
+    return errors;
+  }
+
+  const Bed<Dim>& bed_;
+  const Plan& plan_;
+  bool careful_;
+  BedSimulation<Dim, N> sim_;
+  Ledger start_;
+  std::int64_t refreshes_ = 0;
+  std::vector<Phase> before_;
+  double cpu_ = 0, wall_ = 0;  // [s]
+  ContactAudit<Dim> audit_;
+  double near_ = 0;  // pairs in the list
+};
 
 /// What the triangulation answers in a run, for the oracle.
 template <int Dim>
@@ -174,28 +206,46 @@ Answers<Dim> record_answers(const Bed<Dim>& bed, int steps, const Checkpoint& ch
 }
 
 template <int Dim>
-Sample<Dim> run_lammps_sample(const fs::path& program, const fs::path& folder, const Bed<Dim>& bed,
-                              const LammpsPlan& plan) {
-  const LammpsReport<Dim> report = run_lammps<Dim>(program, folder, bed, plan);
-  Sample<Dim> sample;
-  sample.cpu = report.cpu_seconds;
-  const double grain_steps = static_cast<double>(bed.count()) * plan.steps;
-  std::vector<Phase> spent;
-  for (const auto& [name, seconds] : report.phases) {
-    if (name == "Neigh") spent.push_back({"neighbourhood", 1e9 * seconds});
-    if (name == "Pair") spent.push_back({"grain forces", 1e9 * seconds});
-    if (name == "Modify") spent.push_back({"walls and integration", 1e9 * seconds});
+class LammpsTurns : public TurnTaker<Dim> {
+ public:
+  LammpsTurns(const fs::path& program, const fs::path& folder, const Bed<Dim>& bed,
+              const Plan& plan, bool multi, bool careful)
+      : bed_(bed),
+        plan_(plan),
+        careful_(careful),
+        run_(program, folder, bed, {plan.warm_up, plan.steps, kTurns, multi}) {}
+
+  void take_turn(int) override { run_.take_turn(); }
+
+  Sample<Dim> sample() override {
+    const LammpsReport<Dim> report = run_.finish();
+    Sample<Dim> sample;
+    sample.cpu = report.cpu_seconds;
+    std::vector<Phase> spent;
+    for (const auto& [name, seconds] : report.phases) {
+      if (name == "Neigh") spent.push_back({"neighbourhood", 1e9 * seconds});
+      if (name == "Pair") spent.push_back({"grain forces", 1e9 * seconds});
+      if (name == "Modify") spent.push_back({"walls and integration", 1e9 * seconds});
+    }
+    sample.phases = per_grain_step(spent, report.wall_seconds, report.cpu_seconds,
+                                   static_cast<double>(bed_.count()) * plan_.steps);
+    sample.position = report.position;
+    if (!careful_) return sample;
+    RunErrors& errors = sample.errors;
+    examine<Dim>(bed_, report.position, report.velocity, errors);
+    errors.dangerous = static_cast<double>(report.dangerous);
+    errors.near_per_contact =
+        static_cast<double>(report.neighbours) / (errors.contacts_per_grain * bed_.count());
+    errors.refreshes = 1000 * static_cast<double>(report.builds) / plan_.steps;
+    return sample;
   }
-  sample.phases = per_grain_step(spent, report.wall_seconds, report.cpu_seconds, grain_steps);
-  sample.position = report.position;
-  RunErrors& errors = sample.errors;
-  examine<Dim>(bed, report.position, report.velocity, errors);
-  errors.dangerous = static_cast<double>(report.dangerous);
-  errors.near_per_contact =
-      static_cast<double>(report.neighbours) / (errors.contacts_per_grain * bed.count());
-  errors.refreshes = 1000 * static_cast<double>(report.builds) / plan.steps;
-  return sample;
-}
+
+ private:
+  const Bed<Dim>& bed_;
+  const Plan& plan_;
+  bool careful_;
+  LammpsRun<Dim> run_;
+};
 
 std::string folder_name(const std::string& scene) {
   std::string name;
@@ -255,7 +305,9 @@ class Harness {
   Plan plan_for(int grains, double grain_steps) const {
     Plan plan;
     const double effort = quick() ? grain_steps / 40 : grain_steps;
-    plan.steps = std::clamp(static_cast<int>(effort / grains), 20, 3000);
+    // Long turns: the first step of each takes one more pass over the grains.
+    plan.steps =
+        kTurns * std::clamp(static_cast<int>(effort / grains / kTurns), quick() ? 2 : 20, 250);
     plan.warm_up = std::min(200, 2 * plan.steps);  // margins adapt
     if (quick()) plan.rounds = 2;
     return plan;
@@ -265,9 +317,9 @@ class Harness {
   template <int Dim>
   Plan plan_of_period(const Bed<Dim>& bed, double radius) const {
     Plan plan = plan_for(bed.count(), 3e6);
-    const double period = shake_period(radius) / bed.setting.time_step;
-    plan.warm_up = static_cast<int>(std::lround(period)) / (quick() ? 16 : 1);
-    plan.steps = 2 * plan.warm_up;
+    const double period = shake_period(radius) / bed.setting.time_step / (quick() ? 16 : 1);
+    plan.warm_up = static_cast<int>(std::lround(period));
+    plan.steps = kTurns * static_cast<int>(std::lround(2 * period / kTurns));
     return plan;
   }
 
@@ -276,15 +328,20 @@ class Harness {
   struct Match {
     struct Entry {
       std::string name;
-      std::function<Sample<Dim>(bool careful)> run;  // reads this match, which stays in its place
-      std::vector<std::vector<Phase>> phases;        // by round
+      /// Takes the steps before those that are measured. Reads this match, which stays in its
+      /// place.
+      std::function<std::unique_ptr<TurnTaker<Dim>>(bool careful)> start;
+      std::unique_ptr<TurnTaker<Dim>> running;
+      std::vector<std::vector<Phase>> phases;  // by round
+      Columns<Dim> position;                   // at the end of the first [m]
       bool out = false;
     };
     Bed<Dim> bed;
     Plan plan;
     SceneSpeed scene;
     std::vector<Entry> entries;
-    Columns<Dim> reference;
+
+    double grain_steps() const { return static_cast<double>(bed.count()) * plan.steps; }
   };
 
   // Beds. Each tile settles once.
@@ -490,11 +547,36 @@ class Harness {
     compete_together(match);
   }
 
-  /// Round by round through all scenes: what is compared shares the machine's moods.
+  /// Round by round, and in each round turn by turn, through all scenes and contenders: what is
+  /// compared shares the machine's moods, which may last a second.
   template <int Dim>
   void compete_together(const std::vector<std::unique_ptr<Match<Dim>>>& matches) {
+    const auto for_each_entry = [&](auto&& f) {
+      for (const auto& match : matches) {
+        for (std::size_t k = 0; k < match->entries.size(); ++k) {
+          if (!match->entries[k].out) f(*match, k);
+        }
+      }
+    };
     for (int round = 0; round < matches.front()->plan.rounds; ++round) {
-      for (const auto& match : matches) play(*match, round);
+      const bool careful = round == 0;
+      for_each_entry([&](Match<Dim>& match, std::size_t k) {
+        auto& entry = match.entries[k];
+        doing_ = match.scene.name + ": " + entry.name + ", round " + std::to_string(round + 1);
+        checkpoint_();
+        unless_it_fails(match, k, [&] { entry.running = entry.start(careful); });
+      });
+      for (int turn = 0; turn < kTurns; ++turn) {
+        for_each_entry([&](Match<Dim>& match, std::size_t k) {
+          checkpoint_();
+          unless_it_fails(match, k, [&] { match.entries[k].running->take_turn(turn); });
+        });
+      }
+      for_each_entry([&](Match<Dim>& match, std::size_t k) {
+        unless_it_fails(match, k,
+                        [&] { note(match, k, careful, match.entries[k].running->sample()); });
+        match.entries[k].running = nullptr;
+      });
     }
     for (const auto& match : matches) finish(*match);
   }
@@ -520,23 +602,17 @@ class Harness {
     scene.time_step = bed.setting.time_step;
     scene.parameter = parameter;
 
-    const auto enter = [&](const char* name, std::function<Sample<Dim>(bool careful)> run) {
-      match->entries.push_back({name, std::move(run), {}, false});
-    };
     const auto add = [&]<class N>(const char* name, N neighbourhood) {
-      enter(name, [this, &bed, &plan, neighbourhood](bool careful) {
-        return run_lagrain<Dim, N>(bed, plan, neighbourhood, careful, checkpoint_);
-      });
+      auto& entry = match->entries.emplace_back();
+      entry.name = name;
+      entry.start = [&bed, &plan, neighbourhood](bool careful) {
+        return std::make_unique<LagrainRun<Dim, N>>(bed, plan, neighbourhood, careful);
+      };
     };
     doing_ = scene.name;
     add(kTriangulation, TriangulationNeighbourhood<Dim>{});
     if (plan.oracle) {
-      const Oracle<Dim> oracle(record_answers<Dim>(bed, plan.warm_up + plan.steps, checkpoint_));
-      enter(kOracle, [this, &bed, &plan, oracle](bool careful) {
-        return without_neighbourhood(
-            run_lagrain<Dim, Oracle<Dim>>(bed, plan, oracle, careful, checkpoint_), bed.count(),
-            plan.steps);
-      });
+      add(kOracle, Oracle<Dim>(record_answers<Dim>(bed, plan.warm_up + plan.steps, checkpoint_)));
     }
     add(kCells, CellGrid<Dim>{});
     if (plan.rebuilt) add(kRebuilt, RebuiltTriangulation<Dim>{});
@@ -544,9 +620,11 @@ class Harness {
       const auto add_lammps = [&](const char* name, bool multi) {
         const fs::path folder =
             options_.out / "lammps" / folder_name(scene.name + (multi ? " multi" : ""));
-        enter(name, [this, &bed, &plan, folder, multi](bool) {
-          return run_lammps_sample<Dim>(*lammps_, folder, bed, {plan.warm_up, plan.steps, multi});
-        });
+        auto& entry = match->entries.emplace_back();
+        entry.name = name;
+        entry.start = [this, &bed, &plan, folder, multi](bool careful) {
+          return std::make_unique<LammpsTurns<Dim>>(*lammps_, folder, bed, plan, multi, careful);
+        };
       };
       if (plan.bin) add_lammps(kLammps, false);
       if (plan.multi) add_lammps(kLammpsMulti, true);
@@ -555,34 +633,33 @@ class Harness {
     return match;
   }
 
-  /// Each once, in turn.
-  template <int Dim>
-  void play(Match<Dim>& match, int round) {
-    for (std::size_t k = 0; k < match.entries.size(); ++k) {
+  /// A contender that fails leaves the others running; the triangulation must not fail.
+  template <int Dim, class F>
+  void unless_it_fails(Match<Dim>& match, std::size_t k, F&& f) {
+    try {
+      f();
+    } catch (const SimulationError& error) {
+      if (options_.stop()) throw Interrupted();  // Ctrl-C reaches LAMMPS too
+      if (k == 0) throw;
       auto& entry = match.entries[k];
-      if (entry.out) continue;
-      Contender& contender = match.scene.contenders[k];
-      contender.name = entry.name;
-      doing_ = match.scene.name + ": " + entry.name + ", round " + std::to_string(round + 1);
-      checkpoint_();
-      try {
-        const Sample<Dim> sample = entry.run(round == 0);
-        const double grain_steps = static_cast<double>(match.bed.count()) * match.plan.steps;
-        contender.ns.push_back(1e9 * sample.cpu / grain_steps);
-        entry.phases.push_back(sample.phases);
-        if (round > 0) continue;
-        contender.errors = sample.errors;
-        if (k == 0) match.reference = sample.position;
-        contender.errors.astray = (sample.position - match.reference).colwise().norm().maxCoeff() /
-                                  smallest_radius(match.bed);
-      } catch (const SimulationError& error) {
-        // Ctrl-C reaches LAMMPS too; else a contender that fails leaves the others running.
-        if (options_.stop()) throw Interrupted();
-        if (k == 0) throw;
-        results_.notes.push_back(match.scene.name + ", " + entry.name + ": " + error.what());
-        entry.out = true;
-      }
+      results_.notes.push_back(match.scene.name + ", " + entry.name + ": " + error.what());
+      entry.out = true;
+      entry.running = nullptr;
     }
+  }
+
+  /// Enters what a contender has done in a round.
+  template <int Dim>
+  void note(Match<Dim>& match, std::size_t k, bool careful, Sample<Dim> sample) {
+    auto& entry = match.entries[k];
+    Contender& contender = match.scene.contenders[k];
+    if (entry.name == kOracle) forgive_neighbourhood(sample, match);
+    contender.name = entry.name;
+    contender.ns.push_back(1e9 * sample.cpu / match.grain_steps());
+    entry.phases.push_back(sample.phases);
+    if (!careful) return;
+    contender.errors = sample.errors;
+    entry.position = std::move(sample.position);
   }
 
   template <int Dim>
@@ -594,6 +671,11 @@ class Harness {
           contender.phases = match.entries[k].phases[round];
         }
       }
+      if (contender.ns.empty()) continue;
+      const Columns<Dim>& reference = match.entries.front().position;
+      contender.errors.astray =
+          (match.entries[k].position - reference).colwise().norm().maxCoeff() /
+          smallest_radius(match.bed);
     }
     std::erase_if(match.scene.contenders, [](const Contender& c) { return c.ns.empty(); });
     results_.scenes.push_back(match.scene);
@@ -601,14 +683,12 @@ class Harness {
 
   /// The oracle knows the contacts for nothing: what the run spends on asking it does not count.
   template <int Dim>
-  static Sample<Dim> without_neighbourhood(Sample<Dim> sample, int grains, int steps) {
-    const double grain_steps = static_cast<double>(grains) * steps;
+  static void forgive_neighbourhood(Sample<Dim>& sample, const Match<Dim>& match) {
     for (Phase& phase : sample.phases) {
       if (phase.name != "neighbourhood") continue;
-      sample.cpu -= 1e-9 * phase.ns * grain_steps;
+      sample.cpu -= 1e-9 * phase.ns * match.grain_steps();
       phase.ns = 0;
     }
-    return sample;
   }
 
   template <int Dim>
@@ -639,6 +719,14 @@ double Contender::median() const {
 double Contender::spread() const {
   const auto [low, high] = std::minmax_element(ns.begin(), ns.end());
   return ns.empty() ? kUnknown : (*high - *low) / median();
+}
+
+double ratio(const Contender& a, const Contender& b) {
+  std::vector<double> ratios;
+  for (std::size_t round = 0; round < std::min(a.ns.size(), b.ns.size()); ++round) {
+    ratios.push_back(a.ns[round] / b.ns[round]);
+  }
+  return ratios.empty() ? kUnknown : median_of(ratios);
 }
 
 const Contender* SceneSpeed::find(const std::string& wanted) const {

@@ -51,6 +51,9 @@ struct Contender {
   double spread() const;  ///< largest less smallest, of the median [-]
 };
 
+/// Of the times of two contenders that took turns: the median of what it is in each round.
+double ratio(const Contender& a, const Contender& b);
+
 /// All contenders on one scene.
 struct SceneSpeed {
   std::string group;  ///< scenes of one table

@@ -13,6 +13,9 @@
 
 #include <doctest/doctest.h>
 
+#include <sys/wait.h>
+
+#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -156,10 +159,18 @@ std::optional<fs::path> lammps_or_message() {
 }
 
 template <int Dim>
+LammpsReport<Dim> run_lammps(const fs::path& program, const fs::path& folder, const Bed<Dim>& bed,
+                             const LammpsPlan& plan) {
+  LammpsRun<Dim> run(program, folder, bed, plan);
+  for (int turn = 0; turn < plan.turns; ++turn) run.take_turn();
+  return run.finish();
+}
+
+template <int Dim>
 void check_collision(const fs::path& program, const fs::path& folder) {
   const Bed<Dim> bed = collision<Dim>();
   const auto mine = after_steps<Dim>(bed, CellGrid<Dim>{});
-  const auto theirs = run_lammps<Dim>(program, folder, bed, {0, kSteps, false});
+  const auto theirs = run_lammps<Dim>(program, folder, bed, {0, kSteps, 1, false});
 
   const double speed = (bed.grains[0].velocity - bed.grains[1].velocity).norm();
   const auto after = [&](const Columns<Dim>& v) { return Vec<Dim>((v.col(0) - v.col(1)) / speed); };
@@ -225,10 +236,10 @@ TEST_SUITE("report") {
     }
     CHECK(atoms == bed.count());
     CHECK(types == std::set<int>{1, 2});
-    const std::string input = lammps_input<3>(bed, {10, 20, true});
+    const std::string input = lammps_input<3>(bed, {10, 20, 4, true});
     for (const char* part :
          {"units si\n", "dimension 3\n", " multi\n", "xplane 0 1\n", "zplane 0 NULL\n", "run 10\n",
-          "run 20\n", "fix motion all nve/sphere\n"}) {
+          "run 20 pre no every 5 ", "fix motion all nve/sphere\n"}) {
       CAPTURE(part);
       CHECK(input.find(part) != std::string::npos);
     }
@@ -248,15 +259,43 @@ TEST_SUITE("report") {
     const Folder folder;
     const Bed<3> bed = pour<3>({60, 0.02, 0.02, 0.15}, kGoOn);
     const auto ours = after_steps<3>(bed, TriangulationNeighbourhood<3>{});
-    const auto theirs = run_lammps<3>(*program, folder.path, bed, {0, kSteps, false});
+    const auto theirs = run_lammps<3>(*program, folder.path, bed, {0, kSteps, 1, false});
     CHECK((ours.position - theirs.position).colwise().norm().maxCoeff() < 1e-3 * 0.02);
     CHECK(fs::exists(folder.path / "in.lammps"));
     CHECK(fs::exists(folder.path / "data.lammps"));
   }
 
+  TEST_CASE("LAMMPS in turns does what it does at once, and its steps before them do not count") {
+    const auto program = lammps_or_message();
+    if (!program) return;
+    const Folder folder;
+    Bed<3> bed = collapsing<3>();
+    for (Grain<3>& grain : bed.grains) grain.velocity[0] += 5;
+    const auto once = run_lammps<3>(*program, folder.path, bed, {600, 1200, 1, false});
+    const auto turns = run_lammps<3>(*program, folder.path, bed, {600, 1200, 12, false});
+    const auto from_the_start = run_lammps<3>(*program, folder.path, bed, {0, 1800, 12, false});
+    CHECK(turns.position == once.position);
+    CHECK(turns.velocity == once.velocity);
+    CHECK(once.builds > 0);
+    CHECK(turns.builds == once.builds);
+    CHECK(from_the_start.builds > once.builds);
+    double phases = 0;
+    for (const auto& phase : turns.phases) phases += phase.second;
+    CHECK(phases == doctest::Approx(turns.wall_seconds).epsilon(0.05));
+  }
+
+  TEST_CASE("LAMMPS that is left in the middle of its turns ends") {
+    const auto program = lammps_or_message();
+    if (!program) return;
+    const Folder folder;
+    { LammpsRun<2> run(*program, folder.path, collision<2>(), {0, 100, 4, false}); }
+    CHECK(waitpid(-1, nullptr, WNOHANG) == -1);  // no child is left
+    CHECK(errno == ECHILD);
+  }
+
   TEST_CASE("a program that is not LAMMPS is an error in its own words") {
     const Folder folder;
-    CHECK_THROWS_AS(run_lammps<2>("/bin/false", folder.path, collision<2>(), {0, 1, false}),
+    CHECK_THROWS_AS(run_lammps<2>("/bin/false", folder.path, collision<2>(), {0, 1, 1, false}),
                     SimulationError);
   }
 
