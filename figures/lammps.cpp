@@ -2,9 +2,8 @@
 
 #include <lagrain/output.hpp>
 
-#include <fcntl.h>
 #include <signal.h>
-#include <sys/prctl.h>
+#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -282,19 +281,18 @@ LammpsRun<Dim>::LammpsRun(const fs::path& program, fs::path folder, const Bed<Di
   make_folder(folder_);
   write_file(folder_ / "data.lammps", lammps_data<Dim>(bed));
   write_file(folder_ / "in.lammps", lammps_input<Dim>(bed, plan));
-  process_ = fork();
-  if (process_ < 0) throw SimulationError("LAMMPS cannot be started");
-  if (process_ == 0) {
-    setenv("OMP_NUM_THREADS", "1", 1);
-    const int nowhere = open("/dev/null", O_RDWR);
-    for (int stream = 0; stream < 3; ++stream) dup2(nowhere, stream);
-    if (chdir(folder_.c_str()) != 0) _exit(99);
-    // It shares our Ctrl-C, and does not outlive us while it is stopped.
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    const std::string pause = "shell kill -STOP " + std::to_string(getpid());
-    execl(program.c_str(), program.c_str(), "-in", "in.lammps", "-log", "log.lammps", "-screen",
-          "none", "-var", "pause", pause.c_str(), nullptr);
-    _exit(98);
+  // The shell's number stays that of LAMMPS. Not forked: each page of ours would be slow to write
+  // once afterwards, and whoever takes turns with LAMMPS would be measured doing so.
+  const std::string command =
+      "cd \"$1\" && OMP_NUM_THREADS=1 exec \"$0\" -in in.lammps -log log.lammps -screen none "
+      "-var pause \"shell kill -STOP $$\" </dev/null >/dev/null 2>&1";
+  std::vector<std::string> words{"sh", "-c", command, program.string(), folder_.string()};
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  if (posix_spawn(&process_, "/bin/sh", nullptr, nullptr, argv.data(), environ) != 0) {
+    process_ = 0;
+    throw SimulationError("LAMMPS cannot be started");
   }
   wait_for_pause();
 }
