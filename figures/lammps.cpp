@@ -317,7 +317,10 @@ template <int Dim>
 bool LammpsRun<Dim>::pauses() {
   for (;;) {
     int status = 0;
-    if (waitpid(process_, &status, WUNTRACED) < 0) continue;  // a signal of our own
+    if (waitpid(process_, &status, WUNTRACED) < 0) {
+      if (errno == EINTR) continue;
+      throw SimulationError("LAMMPS cannot be waited for");
+    }
     if (WIFSTOPPED(status)) {
       if (WSTOPSIG(status) == SIGSTOP) return true;
       continue;  // Ctrl-Z, for both of us
