@@ -4,6 +4,7 @@
 
 #include <signal.h>
 #include <spawn.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -281,59 +282,83 @@ LammpsRun<Dim>::LammpsRun(const fs::path& program, fs::path folder, const Bed<Di
   make_folder(folder_);
   write_file(folder_ / "data.lammps", lammps_data<Dim>(bed));
   write_file(folder_ / "in.lammps", lammps_input<Dim>(bed, plan));
-  // The shell's number stays that of LAMMPS. Not forked: each page of ours would be slow to write
-  // once afterwards, and whoever takes turns with LAMMPS would be measured doing so.
+  // Its input and output are one end of a line to us: in a pause it sends a byte, and waits for one
+  // or for the end of the line, so that it does not outlive us waiting. (By the shell's own words:
+  // a program that starts in the background would slow whoever is measured then.)
+  std::array<int, 2> line{};
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, line.data()) != 0) {
+    throw SimulationError("LAMMPS cannot be talked to");
+  }
+  line_.number = line[0];
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  for (const int stream : {0, 1}) posix_spawn_file_actions_adddup2(&actions, line[1], stream);
   const std::string command =
       "cd \"$1\" && OMP_NUM_THREADS=1 exec \"$0\" -in in.lammps -log log.lammps -screen none "
-      "-var pause \"shell kill -STOP $$\" </dev/null >/dev/null 2>&1";
+      "-var pause 'shell echo && read line' 2>/dev/null";
   std::vector<std::string> words{"sh", "-c", command, program.string(), folder_.string()};
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  if (posix_spawn(&process_, "/bin/sh", nullptr, nullptr, argv.data(), environ) != 0) {
-    process_ = 0;
-    throw SimulationError("LAMMPS cannot be started");
-  }
+  // Not forked: each page of ours would be slow to write once afterwards, and whoever takes turns
+  // with LAMMPS would be measured doing so.
+  const int error = posix_spawn(&process_, "/bin/sh", &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  close(line[1]);
+  if (error != 0) throw SimulationError("LAMMPS cannot be started");
   wait_for_pause();
+}
+
+template <int Dim>
+LammpsRun<Dim>::Descriptor::~Descriptor() {
+  if (number >= 0) close(number);
 }
 
 template <int Dim>
 LammpsRun<Dim>::~LammpsRun() {
-  if (process_ <= 0) return;
+  if (process_ == 0) return;
   kill(process_, SIGKILL);
-  while (waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
-  }
+  wait_for_end();
 }
 
 template <int Dim>
 void LammpsRun<Dim>::take_turn() {
-  kill(process_, SIGCONT);
+  go_on();
   wait_for_pause();
+}
+
+template <int Dim>
+void LammpsRun<Dim>::go_on() {
+  // If it has ended, that is seen when it is waited for.
+  send(line_.number, "\n", 1, MSG_NOSIGNAL);
 }
 
 /// Waits until the process has paused or ended.
 /// @returns whether it has paused
 template <int Dim>
 bool LammpsRun<Dim>::pauses() {
-  for (;;) {
-    int status = 0;
-    if (waitpid(process_, &status, WUNTRACED) < 0) {
-      if (errno == EINTR) continue;
-      throw SimulationError("LAMMPS cannot be waited for");
-    }
-    if (WIFSTOPPED(status)) {
-      if (WSTOPSIG(status) == SIGSTOP) return true;
-      continue;  // Ctrl-Z, for both of us
-    }
-    process_ = 0;
-    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    if (code == 0) return false;
-    const std::string log = content(folder_ / "log.lammps");
-    const std::size_t at = log.find("ERROR");
-    throw SimulationError(
-        "LAMMPS ended with code " + std::to_string(code) +
-        (at == std::string::npos ? "" : ": " + log.substr(at, log.find('\n', at) - at)));
+  char byte = 0;
+  ssize_t received = 0;
+  while ((received = read(line_.number, &byte, 1)) < 0 && errno == EINTR) {
   }
+  if (received > 0) return true;
+  const int status = wait_for_end();
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  if (code == 0) return false;
+  const std::string log = content(folder_ / "log.lammps");
+  const std::size_t at = log.find("ERROR");
+  throw SimulationError(
+      "LAMMPS ended with code " + std::to_string(code) +
+      (at == std::string::npos ? "" : ": " + log.substr(at, log.find('\n', at) - at)));
+}
+
+template <int Dim>
+int LammpsRun<Dim>::wait_for_end() {
+  int status = 0;
+  while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+  }
+  process_ = 0;
+  return status;
 }
 
 template <int Dim>
@@ -343,7 +368,7 @@ void LammpsRun<Dim>::wait_for_pause() {
 
 template <int Dim>
 LammpsReport<Dim> LammpsRun<Dim>::finish() {
-  kill(process_, SIGCONT);
+  go_on();
   if (pauses()) throw SimulationError("LAMMPS does not end");
   const std::string log = content(folder_ / "log.lammps");
   LammpsReport<Dim> report;

@@ -65,7 +65,7 @@ template <int Dim>
 std::string lammps_input(const Bed<Dim>& bed, const LammpsPlan& plan);
 
 /// LAMMPS on one core in a folder, where data.lammps and in.lammps stay for the reader. It takes
-/// turns with others: between them its process is stopped.
+/// turns with others: between them it waits.
 template <int Dim>
 class LammpsRun {
  public:
@@ -83,12 +83,21 @@ class LammpsRun {
   LammpsReport<Dim> finish();
 
  private:
+  /// Of a file, closed with its owner.
+  struct Descriptor {
+    int number = -1;
+    ~Descriptor();
+  };
+
+  void go_on();
   bool pauses();
   void wait_for_pause();
+  int wait_for_end();
 
   std::filesystem::path folder_;
   int count_;
   int turns_;
+  Descriptor line_;    // to the process
   pid_t process_ = 0;  // 0 when it has ended
 };
 
