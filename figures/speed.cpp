@@ -111,13 +111,17 @@ std::vector<Phase> per_grain_step(const std::vector<Phase>& spent, double wall, 
   return phases;
 }
 
-/// A run of lagrain, to be taken in turns with others.
+template <int Dim>
+double grain_steps(const Bed<Dim>& bed, const Plan& plan) {
+  return static_cast<double>(bed.count()) * plan.steps;
+}
+
+/// A contender on its way through the measured steps, in turns with others.
 template <int Dim>
 class TurnTaker {
  public:
   virtual ~TurnTaker() = default;
-  /// The next part of the measured steps.
-  virtual void take_turn(int part) = 0;
+  virtual void take_turn(int turn) = 0;
   /// @pre all turns are taken
   virtual Sample<Dim> sample() = 0;
 };
@@ -139,12 +143,12 @@ class LagrainRun : public TurnTaker<Dim> {
     before_ = phases_so_far(sim_);
   }
 
-  void take_turn(int part) override {
+  void take_turn(int turn) override {
     const double wall = wall_seconds(), cpu = processor_seconds();
     sim_.step(plan_.steps / kTurns);
     cpu_ += processor_seconds() - cpu;
     wall_ += wall_seconds() - wall;
-    if (!careful_ || (part + 1) % (kTurns / kAudits) != 0) return;
+    if (!careful_ || (turn + 1) % (kTurns / kAudits) != 0) return;
     const std::vector<Pair> pairs = sim_.near_pairs();
     audit_.check(sim_.grains().position, sim_.grains().radius, pairs);
     near_ = static_cast<double>(pairs.size());
@@ -155,8 +159,7 @@ class LagrainRun : public TurnTaker<Dim> {
     sample.cpu = cpu_;
     std::vector<Phase> spent = phases_so_far(sim_);
     for (std::size_t k = 0; k < spent.size(); ++k) spent[k].ns -= before_[k].ns;
-    sample.phases =
-        per_grain_step(spent, wall_, cpu_, static_cast<double>(bed_.count()) * plan_.steps);
+    sample.phases = per_grain_step(spent, wall_, cpu_, grain_steps(bed_, plan_));
     sample.position = sim_.grains().position;
     if (careful_) sample.errors = errors();
     return sample;
@@ -227,8 +230,8 @@ class LammpsTurns : public TurnTaker<Dim> {
       if (name == "Pair") spent.push_back({"grain forces", 1e9 * seconds});
       if (name == "Modify") spent.push_back({"walls and integration", 1e9 * seconds});
     }
-    sample.phases = per_grain_step(spent, report.wall_seconds, report.cpu_seconds,
-                                   static_cast<double>(bed_.count()) * plan_.steps);
+    sample.phases =
+        per_grain_step(spent, report.wall_seconds, report.cpu_seconds, grain_steps(bed_, plan_));
     sample.position = report.position;
     if (!careful_) return sample;
     RunErrors& errors = sample.errors;
@@ -340,8 +343,6 @@ class Harness {
     Plan plan;
     SceneSpeed scene;
     std::vector<Entry> entries;
-
-    double grain_steps() const { return static_cast<double>(bed.count()) * plan.steps; }
   };
 
   // Beds. Each tile settles once.
@@ -655,7 +656,7 @@ class Harness {
     Contender& contender = match.scene.contenders[k];
     if (entry.name == kOracle) forgive_neighbourhood(sample, match);
     contender.name = entry.name;
-    contender.ns.push_back(1e9 * sample.cpu / match.grain_steps());
+    contender.ns.push_back(1e9 * sample.cpu / grain_steps(match.bed, match.plan));
     entry.phases.push_back(sample.phases);
     if (!careful) return;
     contender.errors = sample.errors;
@@ -686,7 +687,7 @@ class Harness {
   static void forgive_neighbourhood(Sample<Dim>& sample, const Match<Dim>& match) {
     for (Phase& phase : sample.phases) {
       if (phase.name != "neighbourhood") continue;
-      sample.cpu -= 1e-9 * phase.ns * match.grain_steps();
+      sample.cpu -= 1e-9 * phase.ns * grain_steps(match.bed, match.plan);
       phase.ns = 0;
     }
   }
