@@ -54,8 +54,7 @@ UpdateReport Triangulation<2>::move(std::span<const int> moved, const Columns<2>
     LAGRAIN_EXPECTS(contains(id), "site " + std::to_string(id) + " is not present");
     expect_finite(sites(0, id), sites(1, id), weights[id], id);
   }
-  report_ = {};
-  edges_.begin_update();
+  begin();
   moved_.clear();
   for (const int id : moved) {
     const Site2 place{sites(0, id), sites(1, id), weights[id]};
@@ -85,8 +84,7 @@ UpdateReport Triangulation<2>::insert(int id, const Vec<2>& position, double wei
   LAGRAIN_EXPECTS(id >= 0 && id <= size() && !contains(id),
                   "cannot insert site " + std::to_string(id) + ", size " + std::to_string(size()));
   expect_finite(position[0], position[1], weight, id);
-  report_ = {};
-  edges_.begin_update();
+  begin();
   if (id == size()) {
     if (id == 0) topology_.clear(0);  // the infinite vertex
     sites_.emplace_back();
@@ -108,8 +106,7 @@ UpdateReport Triangulation<2>::insert(int id, const Vec<2>& position, double wei
 
 UpdateReport Triangulation<2>::remove(int id) {
   LAGRAIN_EXPECTS(contains(id), "site " + std::to_string(id) + " is not present");
-  report_ = {};
-  edges_.begin_update();
+  begin();
   --present_;
   if (topology_.corner_of(id) <= -2) {
     topology_.set_corner_of(id, Topology2::kNone);
@@ -132,6 +129,14 @@ UpdateReport Triangulation<2>::remove(int id) {
     rebuild();
   }
   return finish();
+}
+
+void Triangulation<2>::begin() {
+  report_ = {};
+  edges_.begin_update();
+#ifdef LAGRAIN_AUDIT
+  edges_.remember();
+#endif
 }
 
 UpdateReport Triangulation<2>::finish() {

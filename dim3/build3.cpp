@@ -12,6 +12,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace lagrain {
@@ -82,7 +83,7 @@ void Triangulation<3>::find_edges(EdgeList& list) const {
   list.find(size_, [&](auto&& f) {
     for (int t = 0; t < topology_.slots(); ++t) {
       const Quad& v = topology_.vertices(t);
-      for (const auto& [k, l] : kEdges) {
+      for (const auto& [k, l] : Topology3::kEdges) {
         const int i = v[index(k)], j = v[index(l)];
         if ((i | j) >= 0 && std::max(i, j) < size_) f(i, j);
       }
@@ -119,19 +120,8 @@ void Triangulation<3>::sort_cells(const std::vector<int>& site_order) {
 /// @param away  auxiliary sites keep to the other side of a plane of sites than this one
 void Triangulation<3>::insert_all(std::span<const int> order, const Site3* away) {
   const auto at = [&](int id) -> const Site3& { return sites_[index(id)]; };
-  // The first sites that span a line, a plane, space.
   Quad simplex{-1, -1, -1, -1};
-  dimension_ = -1;
-  for (const int id : order) {
-    if (dimension_ == 3) break;
-    const bool raises =
-        dimension_ == -1  ? true
-        : dimension_ == 0 ? !same_place(at(simplex[0]), at(id))
-        : dimension_ == 1
-            ? !detail::collinear(at(simplex[0]), at(simplex[1]), at(id))
-            : orientation(at(simplex[0]), at(simplex[1]), at(simplex[2]), at(id)) != 0;
-    if (raises) simplex[index(++dimension_)] = id;
-  }
+  dimension_ = span_of(order, simplex);
   if (dimension_ < 0) return;
   if (dimension_ < 3) place_auxiliaries(simplex, away);
   if (orientation(at(simplex[0]), at(simplex[1]), at(simplex[2]), at(simplex[3])) < 0) {
@@ -146,6 +136,23 @@ void Triangulation<3>::insert_all(std::span<const int> order, const Site3* away)
   }
 }
 
+/// The dimension of what some sites span. The first of them that span a line, a plane, space are
+/// put into `simplex`.
+int Triangulation<3>::span_of(std::span<const int> sites, Quad& simplex) const {
+  const auto at = [&](int id) -> const Site3& { return sites_[index(id)]; };
+  int dimension = -1;
+  for (const int id : sites) {
+    if (dimension == 3) break;
+    const bool raises =
+        dimension == -1  ? true
+        : dimension == 0 ? !same_place(at(simplex[0]), at(id))
+        : dimension == 1 ? !detail::collinear(at(simplex[0]), at(simplex[1]), at(id))
+                         : orientation(at(simplex[0]), at(simplex[1]), at(simplex[2]), at(id)) != 0;
+    if (raises) simplex[index(++dimension)] = id;
+  }
+  return dimension;
+}
+
 /// Completes a simplex of dimension_ + 1 sites by auxiliary ones, each displaced from the first
 /// along an axis.
 void Triangulation<3>::place_auxiliaries(Quad& simplex, const Site3* away) {
@@ -156,25 +163,31 @@ void Triangulation<3>::place_auxiliaries(Quad& simplex, const Site3* away) {
     size = std::max({size, std::abs(at(k).x), std::abs(at(k).y), std::abs(at(k).z)});
   }
   const int missing = 3 - dimension_;
-  // One of the three choices of axes leads out of the span of the sites. The displacement is longer
-  // than any coordinate, so that rounding does not swallow it.
+  // One of the three choices of axes leads out of the span of the sites. The displacement is as
+  // long as any coordinate, so that rounding does not swallow it, and towards zero, so that nothing
+  // overflows.
+  const auto coordinate = [](Site3& site, int axis) -> double& {
+    return axis == 0 ? site.x : axis == 1 ? site.y : site.z;
+  };
+  int last_axis = 0;
   for (int skipped = 0; skipped < 3; ++skipped) {
     int axis = missing == 1 ? skipped : missing == 2 ? (skipped + 1) % 3 : 0;
     for (int k = dimension_ + 1; k <= 3; ++k, axis = (axis + 1) % 3) {
       simplex[index(k)] = size_ + k - dimension_ - 1;
       Site3& auxiliary = at(k);
       auxiliary = at(0);
-      (axis == 0 ? auxiliary.x : axis == 1 ? auxiliary.y : auxiliary.z) += 2 * size;
+      coordinate(auxiliary, axis) += coordinate(auxiliary, axis) > 0 ? -size : size;
       auxiliary.w = 0;
+      last_axis = axis;
     }
     if (spans_space()) break;
   }
   if (away != nullptr && missing == 1 &&
       orientation(at(0), at(1), at(2), at(3)) == orientation(at(0), at(1), at(2), *away)) {
-    Site3& auxiliary = at(3);
-    auxiliary.x += 2 * (at(0).x - auxiliary.x);
-    auxiliary.y += 2 * (at(0).y - auxiliary.y);
-    auxiliary.z += 2 * (at(0).z - auxiliary.z);
+    // To the other side, and no further than doubles go.
+    constexpr double kMost = std::numeric_limits<double>::max();
+    const double from = coordinate(at(0), last_axis);
+    coordinate(at(3), last_axis) = std::clamp(from > 0 ? from + size : from - size, -kMost, kMost);
   }
 }
 
@@ -256,20 +269,16 @@ bool Triangulation<3>::insert_visible(int site) {
   return true;
 }
 
-/// Of a site that will be joined to rim_ in place of hole_.
+/// Of a site that will be joined to rim_ in place of hole_: the edges inside the hole go, and one
+/// to each site of the rim (noted as 2) comes.
 void Triangulation<3>::note_edges_of_insertion(int site) {
   if (!edges_.live()) return;
-  const std::size_t first_note = edges_.mark();
-  for (const int cell : hole_) note_edges_gone(cell);
-  for (const int corner : rim_) {
-    const auto& f = Topology3::kFacet[corner & 3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int v = topology_.vertex((corner & ~3) + f[k]);
-      edges_.note_made(v, topology_.vertex((corner & ~3) + f[(k + 1) % 3]));
-      edges_.note_made(site, v);
-    }
+  topology_.for_each_edge_of(hole_, [&](int a, int b, bool inside) {
+    if (inside) edges_.note_gone(a, b);
+  });
+  for (const int v : cavity_sites_) {
+    if (site_note_[index(v)] == 2) edges_.note_made(site, v);
   }
-  edges_.count_once(first_note);
 }
 
 // ---- Cavities ----------------------------------------------------------------------------------
@@ -278,8 +287,12 @@ void Triangulation<3>::note_edges_of_insertion(int site) {
 /// `hole` if it holds every facet of the hole's boundary. Sites without a cell then are hidden.
 ///
 /// If T was regular but for the cells of the hole, T comes out regular; in particular a site whose
-/// star is the hole can be taken out so.
-/// @param hole   a ball of cells
+/// star is the hole can be taken out so. In a T that is folded the hole may be anything, and
+/// nothing is taken on trust: it is refilled only if its boundary is one sphere. The vertex at
+/// infinity included, T and the small triangulation are 3-spheres, which a sphere parts into two
+/// balls (Alexander, PNAS 10 (1924) 6). So a ball takes the place of a ball, and T stays a
+/// 3-sphere.
+/// @param hole   cells that hang together
 /// @param sites  sites to be used, all of the boundary among them, in increasing order
 /// @param away   see insert_all
 /// @return       false if it cannot be done; T has not changed then
@@ -316,7 +329,7 @@ bool Triangulation<3>::refill(std::span<const int> hole, std::span<const int> si
     }
   }
   for (const int id : sites) site_note_[index(id)] = 0;
-  if (small.dimension_ < (away != nullptr ? 2 : 3)) return false;
+  if (small.dimension_ < (away != nullptr ? 2 : 3) || !facets_form_sphere(count)) return false;
 
   // Find the boundary in the small triangulation.
   std::size_t slots = 16;
@@ -367,6 +380,20 @@ bool Triangulation<3>::refill(std::span<const int> hole, std::span<const int> si
     }
   }
 
+  // The vertices inside must be those of before, but for the hidden ones.
+  const auto note = [&](int v) -> char& { return vertex_seen_[index(v + 1)]; };
+  const bool infinity_on_rim = note(Topology3::kInfinite) != 0;
+  for (const int k : small.hidden_) note(k) = 1;
+  for (const int cell : inside_) {
+    for (const int v : small.topology_.vertices(cell)) note(v) = 1;
+  }
+  const bool infinity_inside =
+      std::any_of(hole.begin(), hole.end(), [&](int cell) { return topology_.infinite(cell); });
+  if (!infinity_on_rim && (note(Topology3::kInfinite) != 0) != infinity_inside) return false;
+  if (std::find(vertex_seen_.begin() + 1, vertex_seen_.end(), 0) != vertex_seen_.end()) {
+    return false;
+  }
+
   // If no tetrahedron is left the rest is flat, and only seen from both sides.
   const auto solid = [](const Topology3& topology, int cell) { return !topology.infinite(cell); };
   if (std::none_of(inside_.begin(), inside_.end(),
@@ -378,9 +405,9 @@ bool Triangulation<3>::refill(std::span<const int> hole, std::span<const int> si
   }
 
   // Copy the inside.
-  const std::size_t first_note = edges_.mark();
+  const std::size_t first_note = edges_.mark(), first_made = touched_.size();
+  topology_.for_each_edge_of(hole, [&](int a, int b, bool) { edges_.note_gone(a, b); });
   for (const int cell : hole) {
-    note_edges_gone(cell);
     if (topology_.infinite(cell)) hull_touched_ = true;
     topology_.release(cell);
   }
@@ -390,7 +417,6 @@ bool Triangulation<3>::refill(std::span<const int> hole, std::span<const int> si
     for (int& v : quad) v = v < 0 ? v : sites[index(v)];
     pending_[index(cell)] = topology_.add(quad);
     touched_.push_back(pending_[index(cell)]);
-    note_edges_made(touched_.back());
     if (topology_.infinite(touched_.back())) hull_touched_ = true;
   }
   for (const int cell : inside_) {
@@ -403,9 +429,51 @@ bool Triangulation<3>::refill(std::span<const int> hole, std::span<const int> si
   for (const CavityFacet& facet : facets_) {
     topology_.link(4 * pending_[index(facet.inside >> 2)] + (facet.inside & 3), facet.outside);
   }
+  topology_.clear_marks();
+  const auto made = std::span(touched_).subspan(first_made);
+  for (const int cell : made) topology_.set_mark(cell);
+  topology_.for_each_edge_of(made, [&](int a, int b, bool) { edges_.note_made(a, b); });
+  edges_.drop_unchanged(first_note);
   for (const int k : small.hidden_) hide(sites[index(k)], sites[index(facets_[0].sites[2])]);
-  edges_.count_once(first_note);
   return true;
+}
+
+/// Whether the facets of facets_, with numbers below `count`, form one sphere: every edge joins two
+/// of them, all hang together, and V - E + F is 2, which is less where a sphere has handles or
+/// touches itself in a vertex. Leaves notes of their vertices in vertex_seen_.
+bool Triangulation<3>::facets_form_sphere(int count) {
+  const std::size_t facets = facets_.size();
+  vertex_seen_.assign(index(count + 1), 0);
+  facet_edges_.clear();
+  for (std::size_t k = 0; k < facets; ++k) {
+    const auto& v = facets_[k].sites;
+    for (std::size_t i = 0; i < 3; ++i) {
+      vertex_seen_[index(v[i] + 1)] = 1;
+      facet_edges_.push_back({std::minmax(v[i], v[(i + 1) % 3]), static_cast<int>(k)});
+    }
+  }
+  std::sort(facet_edges_.begin(), facet_edges_.end());
+
+  part_of_facet_.resize(facets);
+  std::iota(part_of_facet_.begin(), part_of_facet_.end(), 0);
+  const auto part_of = [&](int facet) {
+    while (part_of_facet_[index(facet)] != facet) facet = part_of_facet_[index(facet)];
+    return facet;
+  };
+  std::size_t parts = facets;
+  for (std::size_t k = 0; k < facet_edges_.size(); k += 2) {
+    const auto joins = [&](std::size_t other) {
+      return other < facet_edges_.size() && facet_edges_[other].first == facet_edges_[k].first;
+    };
+    if (!joins(k + 1) || joins(k + 2)) return false;
+    const int a = part_of(facet_edges_[k].second), b = part_of(facet_edges_[k + 1].second);
+    if (a == b) continue;
+    part_of_facet_[index(a)] = b;
+    --parts;
+  }
+  const auto vertices = std::count(vertex_seen_.begin(), vertex_seen_.end(), 1);
+  // E is 3 F / 2. Two facets back to back would be a sphere as well, but part nothing.
+  return parts == 1 && facets > 2 && 2 * static_cast<std::size_t>(vertices) == facets + 4;
 }
 
 // ---- Taking out --------------------------------------------------------------------------------

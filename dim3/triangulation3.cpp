@@ -59,8 +59,7 @@ UpdateReport Triangulation<3>::move(std::span<const int> moved, const Columns<3>
     LAGRAIN_EXPECTS(contains(id), "site " + std::to_string(id) + " is not present");
     expect_finite(site_of(sites, weights, id), id);
   }
-  report_ = {};
-  edges_.begin_update();
+  begin();
   moved_.clear();
   for (const int id : moved) {
     const Site3 place = site_of(sites, weights, id);
@@ -89,8 +88,7 @@ UpdateReport Triangulation<3>::insert(int id, const Vec<3>& position, double wei
                   "cannot insert site " + std::to_string(id) + ", size " + std::to_string(size_));
   const Site3 place{position[0], position[1], position[2], weight};
   expect_finite(place, id);
-  report_ = {};
-  edges_.begin_update();
+  begin();
   if (id == size_) {
     if (size_ == 0) topology_.clear(3);
     ++size_;
@@ -113,8 +111,7 @@ UpdateReport Triangulation<3>::insert(int id, const Vec<3>& position, double wei
 
 UpdateReport Triangulation<3>::remove(int id) {
   LAGRAIN_EXPECTS(contains(id), "site " + std::to_string(id) + " is not present");
-  report_ = {};
-  edges_.begin_update();
+  begin();
   --present_;
   if (topology_.corner_of(id) <= -2) {
     topology_.set_corner_of(id, Topology3::kNone);
@@ -134,6 +131,14 @@ UpdateReport Triangulation<3>::remove(int id) {
     rebuild();
   }
   return finish();
+}
+
+void Triangulation<3>::begin() {
+  report_ = {};
+  edges_.begin_update();
+#ifdef LAGRAIN_AUDIT
+  edges_.remember();
+#endif
 }
 
 UpdateReport Triangulation<3>::finish() {

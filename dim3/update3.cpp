@@ -50,19 +50,26 @@ bool Triangulation<3>::tiny() const {
 /// A point to see the hull from: the mean of the visible sites, auxiliary ones included.
 void Triangulation<3>::choose_middle() {
   const Site3* first = nullptr;
-  double x = 0, y = 0, z = 0, count = 0;
+  // Relative to one of them, so that a far origin costs no digits; in a type in which sums of
+  // doubles do not overflow.
+  long double x = 0, y = 0, z = 0, count = 0;
+  const auto difference = [](double a, double b) {
+    return static_cast<long double>(a) - static_cast<long double>(b);
+  };
   for (int id = 0; id < size_ + 3; ++id) {
     if (topology_.corner_of(id) < 0) continue;
-    // Relative to one of them, so that a far origin costs no digits.
     const Site3& s = sites_[index(id)];
     if (first == nullptr) first = &s;
-    x += s.x - first->x;
-    y += s.y - first->y;
-    z += s.z - first->z;
+    x += difference(s.x, first->x);
+    y += difference(s.y, first->y);
+    z += difference(s.z, first->z);
     ++count;
   }
   if (first == nullptr) return;
-  middle_ = {first->x + x / count, first->y + y / count, first->z + z / count, 0};
+  const auto mean = [&](double from, long double sum) {
+    return static_cast<double>(static_cast<long double>(from) + sum / count);
+  };
+  middle_ = {mean(first->x, x), mean(first->y, y), mean(first->z, z), 0};
 }
 
 /// The same for a triangulation at rest, whose hull the mean may miss by rounding only.
@@ -76,37 +83,42 @@ bool Triangulation<3>::sees_whole_hull() const {
   return std::all_of(star_.begin(), star_.end(), [&](int at) { return positive(at >> 2); });
 }
 
-/// Infinite cells that are all positive cover the directions from the middle a whole number of
-/// times; so count those that hold one direction.
-bool Triangulation<3>::hull_goes_round_once() const {
-  topology_.star(Topology3::kInfinite, star_);
-  const auto facet_of = [&](int at, std::size_t k) -> const Site3& {
-    const int i = Topology3::kFacet[at & 3][k];
-    return sites_[index(topology_.vertex((at & ~3) + i))];
-  };
-  // The first facet's mean may lie on an edge of another by rounding; then take the next.
-  for (const int chosen : star_) {
-    Site3 aim{0, 0, 0, 0};
-    for (std::size_t k = 0; k < 3; ++k) {
-      aim.x += facet_of(chosen, k).x / 3;
-      aim.y += facet_of(chosen, k).y / 3;
-      aim.z += facet_of(chosen, k).z / 3;
-    }
-    int hit = 0;
-    bool certain = true;
-    for (const int at : star_) {
-      // Positive order seen from infinity is negative from the middle.
-      const Site3 &a = facet_of(at, 0), &b = facet_of(at, 1), &c = facet_of(at, 2);
-      const int ab = orientation(middle_, b, a, aim), bc = orientation(middle_, c, b, aim);
-      if (ab < 0 || bc < 0) continue;
-      const int ca = orientation(middle_, a, c, aim);
-      if (ca < 0) continue;
-      certain = certain && ab > 0 && bc > 0 && ca > 0;
-      ++hit;
-    }
-    if (certain) return hit == 1;
+/// Sign of the tetrahedron of a middle (see hull_goes_round_once) and three sites.
+int Triangulation<3>::side_from(std::span<const Site3> middle, const Site3& a, const Site3& b,
+                                const Site3& c) {
+  for (const Site3& point : middle) {
+    if (const int side = orientation(point, a, b, c); side != 0) return side;
   }
-  return false;
+  return 0;
+}
+
+/// Infinite cells that are all positive cover the directions from the middle a whole number of
+/// times; so count those that hold one direction. It leads to a hull facet a b c: to a, from there
+/// an infinitesimal way towards b and a still smaller one towards c. So it meets no edge of another
+/// facet, and all signs are exact.
+/// @param middle  the point to see them from: the first of these, or, where it lies in a plane that
+///                is asked about, an infinitesimal way from it towards the next
+bool Triangulation<3>::hull_goes_round_once(std::span<const Site3> middle) const {
+  topology_.star(Topology3::kInfinite, star_);
+  const auto facet_of = [&](int at) -> std::array<int, 3> {
+    // In positive order as seen from the middle, which is negative from infinity.
+    const auto& f = Topology3::kFacet[at & 3];
+    const Quad& v = topology_.vertices(at >> 2);
+    return {v[index(f[1])], v[index(f[0])], v[index(f[2])]};
+  };
+  const std::array<int, 3> aim = facet_of(star_.front());
+  const auto is_left_of = [&](int from, int to) {
+    for (const int id : aim) {
+      if (id == from || id == to) continue;
+      const int side = side_from(middle, sites_[index(from)], sites_[index(to)], sites_[index(id)]);
+      if (side != 0) return side > 0;
+    }
+    return false;
+  };
+  return std::count_if(star_.begin(), star_.end(), [&](int at) {
+           const auto [a, b, c] = facet_of(at);
+           return is_left_of(a, b) && is_left_of(b, c) && is_left_of(c, a);
+         }) == 1;
 }
 
 /// A visible site that shares an edge with a visible site.
@@ -199,16 +211,6 @@ bool Triangulation<3>::exchange(std::span<const int> in, std::span<const Quad> o
   if (logging_) log_.push_back(flip);
   ++report_.flips;
   return true;
-}
-
-void Triangulation<3>::note_edges_gone(int cell) {
-  const Quad& v = topology_.vertices(cell);
-  for (const auto& [k, l] : kEdges) edges_.note_gone(v[index(k)], v[index(l)]);
-}
-
-void Triangulation<3>::note_edges_made(int cell) {
-  const Quad& v = topology_.vertices(cell);
-  for (const auto& [k, l] : kEdges) edges_.note_made(v[index(k)], v[index(l)]);
 }
 
 /// 2-3: the facet opposite to a corner gives way to the edge that joins the two apices.
@@ -393,7 +395,7 @@ bool Triangulation<3>::flip_to_regular() {
       if (!drain()) return false;
     }
   }
-  return settle() && (!hull_touched_ || hull_goes_round_once());
+  return settle() && (!hull_touched_ || hull_goes_round_once({&middle_, 1}));
 }
 
 // ---- Moves -------------------------------------------------------------------------------------

@@ -6,7 +6,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
+#include <iterator>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace lagrain {
@@ -31,6 +35,7 @@ class EdgeList {
   void begin_update() {
     first_new_ = notes_.size();
     all_new_ = false;
+    before_.reset();
   }
   void end_update() {
     if (notes_.size() > edges_.size() / 4) settle();
@@ -86,28 +91,57 @@ class EdgeList {
   bool live() const { return live_; }
   void note_made(int a, int b) { note(a, b, 0); }
   void note_gone(int a, int b) { note(a, b, 1); }
-  /// Notes so far; those after a mark can be taken back, or reduced to what they change when each
-  /// edge made or gone is counted once.
+  /// Notes so far; those after a mark can be taken back, or lose the edges that went and came.
   std::size_t mark() const { return notes_.size(); }
   void take_back(std::size_t mark) { notes_.resize(std::min(mark, notes_.size())); }
-  void count_once(std::size_t mark) {
+  void drop_unchanged(std::size_t mark) {
     const auto first = notes_.begin() + static_cast<std::ptrdiff_t>(mark);
     std::sort(first, notes_.end());
-    const auto last = std::unique(first, notes_.end());
     auto kept = first;
-    for (auto it = first; it != last; ++it) {
-      if (it + 1 != last && (*it >> 1) == (*(it + 1) >> 1)) {
-        ++it;
-      } else {
-        *kept++ = *it;
-      }
-    }
+    for_each_change(first, notes_.end(), [&](std::uint64_t key, int count) {
+      kept = std::fill_n(kept, std::abs(count), key << 1 | (count < 0 ? 1U : 0U));
+    });
     notes_.erase(kept, notes_.end());
   }
 
+  /// Keeps the edges as they are before an update, so that audit() can tell which are new.
+  void remember() {
+    const EdgeList settled(*this);
+    before_.emplace(settled.all().begin(), settled.all().end());
+  }
+
+  /// What is wrong with the list, or with what it tells of new edges if remember() was called after
+  /// begin_update(); empty if nothing is. The list is not settled by that.
+  /// @param found  the edges, found from nothing
+  std::string audit(const EdgeList& found) const {
+    const EdgeList settled(*this), telling(*this);
+    if (!std::ranges::equal(settled.all(), found.all())) return "the list of edges is out of date";
+    if (!before_) return {};
+    std::vector<Edge> told, made;
+    telling.for_each_new([&](int i, int j) { told.push_back({i, j}); });
+    std::sort(told.begin(), told.end());
+    std::ranges::set_difference(found.all(), *before_, std::back_inserter(made));
+    if (!std::ranges::includes(told, made)) return "an edge is not told to be new";
+    return {};
+  }
+
  private:
+  friend struct AuditProbe;
+
   static Edge edge_of(std::uint64_t key) {
     return {static_cast<int>(key >> 32), static_cast<int>(key & 0xffffffffU)};
+  }
+
+  /// Calls f(key, count) for each edge that sorted notes made more often than they took it away, or
+  /// less often: by `count`.
+  template <class Note, class F>
+  static void for_each_change(Note first, Note last, F&& f) {
+    while (first != last) {
+      const std::uint64_t key = *first >> 1;
+      int count = 0;
+      for (; first != last && *first >> 1 == key; ++first) count += (*first & 1) == 0 ? 1 : -1;
+      if (count != 0) f(key, count);
+    }
   }
 
   void settle() const {
@@ -117,11 +151,7 @@ class EdgeList {
     next_.clear();
     next_.reserve(edges_.size() + notes_.size());
     auto old = edges_.cbegin();
-    for (auto it = notes_.cbegin(); it != notes_.cend();) {
-      const std::uint64_t key = *it >> 1;
-      int count = 0;
-      for (; it != notes_.cend() && *it >> 1 == key; ++it) count += (*it & 1) == 0 ? 1 : -1;
-      if (count == 0) continue;
+    for_each_change(notes_.cbegin(), notes_.cend(), [&](std::uint64_t key, int count) {
       const Edge edge = edge_of(key);
       const auto place = std::lower_bound(old, edges_.cend(), edge);
       next_.insert(next_.end(), old, place);
@@ -131,7 +161,7 @@ class EdgeList {
       } else {
         ++old;
       }
-    }
+    });
     next_.insert(next_.end(), old, edges_.cend());
     edges_.swap(next_);
     notes_.clear();
@@ -150,6 +180,7 @@ class EdgeList {
   mutable bool all_new_ = true;
   std::size_t first_new_ = 0;
   bool live_ = false;
+  std::optional<std::vector<Edge>> before_;
 };
 
 }  // namespace lagrain

@@ -99,6 +99,11 @@ class Topology2 {
     flags = on ? flags | bit : flags & ~bit;
     return was;
   }
+  /// Whether a triangle is as it should be between updates: no flag is set, and its note is no
+  /// larger than the last.
+  bool at_rest(int triangle, int last_mark) const {
+    return triangles_[index(triangle)].flags == 0 && mark(triangle) <= last_mark;
+  }
 
  private:
   static constexpr int kDead = -2;

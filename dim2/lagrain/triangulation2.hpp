@@ -143,7 +143,14 @@ class Triangulation<2> {
   std::vector<Defect> audit() const;
 
  private:
+  friend struct AuditProbe;
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+  // Audit (audit2.cpp).
+  template <class Report>
+  void audit_line(Report&& report) const;
+  template <class Report, class ReportTriangle>
+  void audit_triangles(Report&& report, ReportTriangle&& report_triangle) const;
 
   // Build (build2.cpp).
   void rebuild();
@@ -189,6 +196,7 @@ class Triangulation<2> {
   void choose_folded();
   bool insert_visible(int site);
   void try_hidden();
+  void begin();
   UpdateReport finish();
 
   std::vector<Site2> sites_;   // by id

@@ -27,6 +27,8 @@ class Topology3 {
 
   /// Indices of the facet opposite to index i; i and these three, in this order, are positive.
   static constexpr int kFacet[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+  /// Indices of the ends of the six edges; edges k and 5 - k are opposite.
+  static constexpr int kEdges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 
   /// Empties everything; `vertices` finite vertices without a corner.
   void clear(int vertices);
@@ -97,6 +99,32 @@ class Topology3 {
   bool marked(int cell) const { return mark_[index(cell)] == epoch_; }
   void set_mark(int cell) { mark_[index(cell)] = epoch_; }
 
+  /// Calls f(a, b, inside) once for each edge that has a marked cell around it: its ends, and
+  /// whether all cells around it are marked. An edge is what cells turn around, not a pair of
+  /// vertices: in a triangulation that is folded two edges may join the same two.
+  /// @param cells  the marked cells, each once
+  template <class F>
+  void for_each_edge_of(std::span<const int> cells, F&& f) const {
+    for (const int cell : cells) {
+      for (std::size_t k = 0; k < 6; ++k) {
+        int through = 4 * cell + kEdges[5 - k][0], other = 4 * cell + kEdges[5 - k][1];
+        bool inside = true, least = true;  // of the marked cells around the edge
+        for (;;) {
+          turn(through, other);
+          const int beyond = through >> 2;
+          if (beyond == cell) break;
+          if (!marked(beyond)) {
+            inside = false;
+          } else if (beyond < cell) {
+            least = false;
+            break;
+          }
+        }
+        if (least) f(vertex(4 * cell + kEdges[k][0]), vertex(4 * cell + kEdges[k][1]), inside);
+      }
+    }
+  }
+
   /// Sets or clears the flag of a corner; returns what it was.
   bool exchange_flag(int corner, bool on) {
     unsigned char& flags = flags_[index(corner >> 2)];
@@ -105,6 +133,9 @@ class Topology3 {
     flags = static_cast<unsigned char>(on ? flags | bit : flags & ~bit);
     return was;
   }
+  /// Whether a cell is as it should be between updates: no flag is set, and its mark is of this
+  /// epoch or of one before.
+  bool at_rest(int cell) const { return flags_[index(cell)] == 0 && mark_[index(cell)] <= epoch_; }
 
  private:
   static constexpr int kDead = -2;

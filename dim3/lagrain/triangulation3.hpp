@@ -16,6 +16,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lagrain {
@@ -157,6 +158,7 @@ class Triangulation<3> {
   std::vector<Defect> audit() const;
 
  private:
+  friend struct AuditProbe;
   using Quad = Topology3::Quad;
 
   /// A member that its owner's copies begin without.
@@ -191,7 +193,6 @@ class Triangulation<3> {
     auto operator<=>(const Ear&) const = default;
   };
 
-  static constexpr int kEdges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
   static constexpr int kRings = 4;  ///< cavities wider than this are not tried
 
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
@@ -201,7 +202,9 @@ class Triangulation<3> {
   bool positive(int cell) const { return sign(topology_.vertices(cell)) > 0; }
   bool conflict(int cell, int site) const;
   bool locally_regular(int corner) const;
-  bool hull_goes_round_once() const;
+  static int side_from(std::span<const Site3> middle, const Site3& a, const Site3& b,
+                       const Site3& c);
+  bool hull_goes_round_once(std::span<const Site3> middle) const;
   bool tiny() const;
   bool moved_place(int id) const;
   int visible_from(int site) const;
@@ -212,16 +215,24 @@ class Triangulation<3> {
   bool sees_whole_hull() const;
   void collect_vertices(std::span<const int> corners, std::vector<int>& vertices) const;
 
+  // Audit (audit3.cpp).
+  template <class Report, class ReportCell>
+  void audit_cells(Report&& report, ReportCell&& report_cell) const;
+  template <class Report>
+  void audit_hull(Report&& report) const;
+
   // Build and cavities (build3.cpp).
   void rebuild();
   void find_edges(EdgeList& list) const;
   void insert_all(std::span<const int> order, const Site3* away);
+  int span_of(std::span<const int> sites, Quad& simplex) const;
   void sort_cells(const std::vector<int>& site_order);
   void first_simplex(const Quad& simplex);
   void place_auxiliaries(Quad& simplex, const Site3* away);
   bool insert_visible(int site);
   void note_edges_of_insertion(int site);
   bool refill(std::span<const int> hole, std::span<const int> sites, const Site3* away);
+  bool facets_form_sphere(int count);
   bool take_out(int site);
   bool flip_out(int site);
   void list_ears(int at);
@@ -233,8 +244,6 @@ class Triangulation<3> {
   void push(int corner);
   void push_cell(int cell);
   bool exchange(std::span<const int> in, std::span<const Quad> out);
-  void note_edges_gone(int cell);
-  void note_edges_made(int cell);
   bool flip_facet(int corner);
   bool flip_edge(int corner, int other, int cells);
   bool flip_vertex(int corner);
@@ -251,6 +260,7 @@ class Triangulation<3> {
   bool extract_inverted();
   bool choose_cover(std::span<const int> cells);
   void try_hidden();
+  void begin();
   UpdateReport finish();
 
   int size_ = 0;
@@ -278,6 +288,9 @@ class Triangulation<3> {
   std::vector<int> moved_, around_, inverted_, unresolved_, cover_, touched_;
   std::vector<int> hole_, rim_, cavity_, cavity_sites_, inside_, pending_;
   std::vector<CavityFacet> facets_;
+  std::vector<std::pair<std::pair<int, int>, int>> facet_edges_;  // ends, facet
+  std::vector<int> part_of_facet_;
+  std::vector<char> vertex_seen_;  // of vertex v at v + 1
   std::vector<int> facet_table_;
   NotCopied<Triangulation<3>> small_;
   mutable std::vector<int> star_, neighbours_, vertex_note_;
