@@ -3,6 +3,7 @@
 /// Private to the triangulations of dim2 and dim3: what an audit finds in the book-keeping of
 /// sites.
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -42,6 +43,17 @@ void audit_sites(const Topology& topology, int size, int auxiliary, std::span<co
       report(id, "the hints of the hidden site lead nowhere");
     }
   }
+}
+
+/// Whether the free slots of a topology are its dead ones, each once: the next simplex goes there.
+template <class Topology>
+bool free_slots_are_dead(const Topology& topology) {
+  std::vector<int> free(topology.free_slots().begin(), topology.free_slots().end()), dead;
+  for (int slot = 0; slot < topology.slots(); ++slot) {
+    if (!topology.alive(slot)) dead.push_back(slot);
+  }
+  std::sort(free.begin(), free.end());
+  return free == dead;
 }
 
 }  // namespace lagrain::detail

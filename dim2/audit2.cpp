@@ -20,6 +20,7 @@ std::vector<Triangulation<2>::Defect> Triangulation<2>::audit() const {
 
   detail::audit_sites<Topology2, Site2>(topology_, size(), 0, sites_, before_, present_, hidden_,
                                         report);
+  if (last_ < 0 || last_ > size()) report(-1, "the search for the next site begins nowhere");
   if (dimension_ < 2) {
     audit_line(report);
   } else {
@@ -27,7 +28,8 @@ std::vector<Triangulation<2>::Defect> Triangulation<2>::audit() const {
   }
   if (!defects.empty()) return defects;
 
-  if (dimension_ == 2) {
+  if (dimension_ >= 2) {
+    if (dimension_ > 2) report(-1, "the dimension is wrong");
     if (!hull_goes_round_once()) report(-1, "the hull does not go round once");
     for (const int id : hidden_) {
       const int t = locate(id, visible_from(id));
@@ -69,6 +71,7 @@ void Triangulation<2>::audit_line(Report&& report) const {
 template <class Report, class ReportTriangle>
 void Triangulation<2>::audit_triangles(Report&& report, ReportTriangle&& report_triangle) const {
   if (!line_.empty()) report(-1, "there is a line beside the triangles");
+  if (!detail::free_slots_are_dead(topology_)) report(-1, "the list of free slots is wrong");
   for (int t = 0; t < topology_.slots(); ++t) {
     if (!topology_.alive(t)) continue;
     const auto v = corners_of(t);
@@ -80,7 +83,8 @@ void Triangulation<2>::audit_triangles(Report&& report, ReportTriangle&& report_
     }
     for (int corner = 4 * t; corner < 4 * t + 3; ++corner) {
       const int other = topology_.twin(corner);
-      if (other < 0 || topology_.twin(other) != corner || !topology_.alive(other >> 2) ||
+      if (other < 0 || other >> 2 >= topology_.slots() || (other & 3) == 3 ||
+          topology_.twin(other) != corner || !topology_.alive(other >> 2) ||
           topology_.source(corner) != topology_.target(other) ||
           topology_.target(corner) != topology_.source(other)) {
         report_triangle(t, v, "two neighbours do not share their edge");

@@ -29,7 +29,6 @@ int Topology2::add(int a, int b, int c) {
   int triangle = slots();
   if (free_.empty()) {
     triangles_.emplace_back();
-    triangles_.back().mark = 0;
   } else {
     triangle = free_.back();
     free_.pop_back();
@@ -38,7 +37,7 @@ int Topology2::add(int a, int b, int c) {
   t.vertex[0] = a;
   t.vertex[1] = b;
   t.vertex[2] = c;
-  t.flags = 0;
+  t.mark = t.flags = 0;
   set_corner_of(a, 4 * triangle);
   set_corner_of(b, 4 * triangle + 1);
   set_corner_of(c, 4 * triangle + 2);

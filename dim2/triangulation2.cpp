@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
 namespace lagrain {
@@ -43,6 +42,7 @@ void Triangulation<2>::build(const Columns<2>& sites, const Eigen::VectorXd& wei
   present_ = n;
   rebuild();
   before_ = sites_;
+  expect_valid();
 }
 
 UpdateReport Triangulation<2>::move(std::span<const int> moved, const Columns<2>& sites,
@@ -142,12 +142,17 @@ void Triangulation<2>::begin() {
 UpdateReport Triangulation<2>::finish() {
   std::sort(hidden_.begin(), hidden_.end());
   edges_.end_update();
+  expect_valid();
+  return report_;
+}
+
+/// Nothing, unless lagrain was built to audit itself.
+void Triangulation<2>::expect_valid() const {
 #ifdef LAGRAIN_AUDIT
   if (const auto defects = audit(); !defects.empty()) {
-    throw std::logic_error("Triangulation<2>: " + defects.front().sentence);
+    throw AuditError("Triangulation<2>: " + defects.front().sentence);
   }
 #endif
-  return report_;
 }
 
 }  // namespace lagrain

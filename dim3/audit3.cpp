@@ -14,7 +14,10 @@ using Quad = Topology3::Quad;
 
 /// Whether the corner and its twin see the same facet, in opposite order.
 bool share_facet(const Topology3& topology, int corner, int other) {
-  if (other < 0 || topology.twin(other) != corner || !topology.alive(other >> 2)) return false;
+  if (other < 0 || other >> 2 >= topology.slots() || topology.twin(other) != corner ||
+      !topology.alive(other >> 2)) {
+    return false;
+  }
   const auto vertex = [&](int at, int k) {
     return topology.vertex((at & ~3) + Topology3::kFacet[at & 3][k % 3]);
   };
@@ -41,10 +44,14 @@ std::vector<Triangulation<3>::Defect> Triangulation<3>::audit() const {
 
   detail::audit_sites<Topology3, Site3>(topology_, size_, present_ > 0 ? 3 - dimension_ : 0, sites_,
                                         before_, present_, hidden_, report);
-  if (present_ == 0) return defects;
-  audit_cells(report, report_cell);
-  if (!defects.empty()) return defects;
-  audit_hull(report);
+  if (last_ < 0 || last_ > size_) report(-1, "the search for the next site begins nowhere");
+  if (present_ > 0) {
+    audit_cells(report, report_cell);
+    if (!defects.empty()) return defects;
+    audit_hull(report);
+  } else if (dimension_ != -1 || topology_.slots() != 0) {
+    report(-1, "nothing is present, and something is left");
+  }
   if (!defects.empty()) return defects;
 
   for (const int id : hidden_) {
@@ -69,6 +76,7 @@ std::vector<Triangulation<3>::Defect> Triangulation<3>::audit() const {
 template <class Report, class ReportCell>
 void Triangulation<3>::audit_cells(Report&& report, ReportCell&& report_cell) const {
   bool sound = true;
+  if (!detail::free_slots_are_dead(topology_)) report(-1, "the list of free slots is wrong");
   for (int t = 0; t < topology_.slots(); ++t) {
     if (!topology_.alive(t)) continue;
     const Quad& v = topology_.vertices(t);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
 namespace lagrain {
@@ -48,6 +47,7 @@ void Triangulation<3>::build(const Columns<3>& sites, const Eigen::VectorXd& wei
   for (int i = 0; i < n; ++i) topology_.set_corner_of(i, -2);
   rebuild();
   before_ = sites_;
+  expect_valid();
 }
 
 UpdateReport Triangulation<3>::move(std::span<const int> moved, const Columns<3>& sites,
@@ -144,12 +144,17 @@ void Triangulation<3>::begin() {
 UpdateReport Triangulation<3>::finish() {
   std::sort(hidden_.begin(), hidden_.end());
   edges_.end_update();
+  expect_valid();
+  return report_;
+}
+
+/// Nothing, unless lagrain was built to audit itself.
+void Triangulation<3>::expect_valid() const {
 #ifdef LAGRAIN_AUDIT
   if (const auto defects = audit(); !defects.empty()) {
-    throw std::logic_error("Triangulation<3>: " + defects.front().sentence);
+    throw AuditError("Triangulation<3>: " + defects.front().sentence);
   }
 #endif
-  return report_;
 }
 
 }  // namespace lagrain

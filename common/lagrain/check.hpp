@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace lagrain {
 
@@ -23,7 +24,17 @@ struct SimulationError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What is kept because it is faster to keep than to find again is wrong: lagrain has a bug.
+struct AuditError : std::logic_error {
+  using std::logic_error::logic_error;
+};
+
 namespace detail {
+/// @throws AuditError with the first of the sentences, if there is one
+inline void expect_no_defect(const std::string& what, const std::vector<std::string>& defects) {
+  if (!defects.empty()) throw AuditError(what + ": " + defects.front());
+}
+
 [[noreturn]] inline void contract_failed(const char* condition, const std::string& message) {
   throw ContractError(message + " (expected " + condition + ")");
 }

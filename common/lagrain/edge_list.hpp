@@ -114,6 +114,7 @@ class EdgeList {
   /// begin_update(); empty if nothing is. The list is not settled by that.
   /// @param found  the edges, found from nothing
   std::string audit(const EdgeList& found) const {
+    if (!live_ && !found.edges_.empty()) return "the list of edges knows nothing of updates";
     const EdgeList settled(*this), telling(*this);
     if (!std::ranges::equal(settled.all(), found.all())) return "the list of edges is out of date";
     if (!before_) return {};

@@ -2,6 +2,8 @@
 /// @file
 /// The flat lists that the step loop runs over, and when they must be made anew.
 
+#include <lagrain/check.hpp>
+#include <lagrain/contact_search.hpp>
 #include <lagrain/neighbourhood.hpp>
 #include <lagrain/pair_table.hpp>
 #include <lagrain/walls.hpp>
@@ -11,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -44,6 +47,7 @@ class NearList {
     int partner;       ///< the slot of the other end
     std::size_t pair;  ///< its rank among the pairs across of all blocks
     bool second() const { return partner < slot; }  ///< the end j of the pair
+    bool operator==(const End&) const = default;
   };
   /// The slots [first_slot, end_slot) and the pairs of their grains.
   struct Block {
@@ -128,6 +132,9 @@ class NearList {
     paid_ = 0;
     known_ = true;
     ++refreshes_;
+#ifdef LAGRAIN_AUDIT
+    detail::expect_no_defect("near list, refreshed", audit(radius, all_walls));
+#endif
   }
 
   /// Centres the grains anew that have left their margins, and adds the pairs that they lack. What
@@ -177,6 +184,9 @@ class NearList {
       }
     }
     amended_ += static_cast<std::int64_t>(strays.size());
+#ifdef LAGRAIN_AUDIT
+    detail::expect_no_defect("near list, amended", audit(radius, all_walls));
+#endif
     return true;
   }
 
@@ -223,7 +233,25 @@ class NearList {
     known_ = false;
   }
 
+  /// Checks what is listed against a search from nothing, and what is kept beside it; empty means
+  /// valid. (That grains are within their margins is for `holds` to say.)
+  /// @pre the list is fresh
+  std::vector<std::string> audit(const Eigen::VectorXd& radius,
+                                 const std::vector<Wall<Dim>>& all_walls) const {
+    std::vector<std::string> defects;
+    if (wall_centre_.size() != all_walls.size() || wall_margin_.size() != all_walls.size() ||
+        stay_.size() != index(size_) || margin_.size() != size_) {
+      return {"the parts of the list do not fit together"};
+    }
+    audit_blocks(defects);
+    if (!defects.empty()) return defects;
+    audit_pairs(radius, defects);
+    audit_walls(radius, all_walls, defects);
+    return defects;
+  }
+
  private:
+  friend struct AuditProbe;
   static constexpr double kHorizon = 100;      // steps that a grain may keep its speed
   static constexpr double kCeiling = 0.3;      // of a radius: wider lists cost more than refreshes
   static constexpr double kLeastFloor = 1e-4;  // of a radius
@@ -305,7 +333,9 @@ class NearList {
     table.assign(std::move(keys), memories);
   }
 
-  Block& block_of(int slot) { return blocks_[index(slot / block_size_)]; }
+  Block& block_of(int slot) {
+    return blocks_[index(slot / block_size_)];
+  }
 
   /// Puts fresh_ into the blocks' tables.
   void list_pairs() {
@@ -332,6 +362,90 @@ class NearList {
         block.ends.push_back({i, j, across_});
         block_of(j).ends.push_back({j, i, across_});
         ++across_;
+      }
+    }
+  }
+
+  /// Blocks share out the slots and own their pairs; their ends are those of the pairs across.
+  void audit_blocks(std::vector<std::string>& defects) const {
+    int first = 0;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const Block& block = blocks_[b];
+      const auto inside = [&](int slot) {
+        return block.first_slot <= slot && slot < block.end_slot;
+      };
+      const bool sound =
+          block.first_slot == first && first == static_cast<int>(b) * block_size_ &&
+          inside(first) && block.end_slot <= size_ && block.within.sound() &&
+          block.across.sound() && block.walls.sound() &&
+          std::ranges::all_of(block.within.pairs(),
+                              [&](const Pair& pair) {
+                                return pair.i < pair.j && inside(pair.i) && inside(pair.j);
+                              }) &&
+          std::ranges::all_of(block.across.pairs(),
+                              [&](const Pair& pair) {
+                                return inside(pair.i) && pair.j >= block.end_slot && pair.j < size_;
+                              }) &&
+          std::ranges::all_of(block.walls.pairs(), [&](const WallPair& pair) {
+            return inside(pair.i) && pair.wall >= 0 && index(pair.wall) < wall_centre_.size();
+          });
+      if (!sound) defects.push_back("block " + std::to_string(b) + " is not sound");
+      first = block.end_slot;
+    }
+    if (first != size_) defects.push_back("blocks do not share out the slots");
+    if (!defects.empty()) return;
+
+    NearList listed_anew = *this;
+    listed_anew.list_ends();
+    if (across_ != listed_anew.across_) defects.push_back("the number of pairs across is wrong");
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const Block& anew = listed_anew.blocks_[b];
+      if (blocks_[b].ends == anew.ends && blocks_[b].first_across == anew.first_across) continue;
+      defects.push_back("the ends of block " + std::to_string(b) + " are out of date");
+    }
+  }
+
+  /// All pairs within reach of centres and margins are listed.
+  void audit_pairs(const Eigen::VectorXd& radius, std::vector<std::string>& defects) const {
+    Columns<Dim> centre(Dim, size_);
+    for (int i = 0; i < size_; ++i) {
+      centre.col(i) = stay_[index(i)].centre;
+      const double margin = margin_[i] * kHair;
+      if (!(margin_[i] >= 0) || stay_[index(i)].squared_margin != margin * margin) {
+        defects.push_back("slot " + std::to_string(i) + " stays within another margin");
+      }
+    }
+    std::vector<Pair> listed;
+    for (const Block& block : blocks_) {
+      for (const auto* table : {&block.within, &block.across}) {
+        listed.insert(listed.end(), table->pairs().begin(), table->pairs().end());
+      }
+    }
+    std::sort(listed.begin(), listed.end());
+    ContactSearch<Dim> search;
+    for (const Pair& pair : search.find(centre, radius + margin_)) {
+      if (std::binary_search(listed.begin(), listed.end(), pair)) continue;
+      defects.push_back("slots " + std::to_string(pair.i) + " and " + std::to_string(pair.j) +
+                        " are within reach and not listed");
+    }
+  }
+
+  void audit_walls(const Eigen::VectorXd& radius, const std::vector<Wall<Dim>>& all_walls,
+                   std::vector<std::string>& defects) const {
+    for (std::size_t w = 0; w < all_walls.size(); ++w) {
+      for (const Block& block : blocks_) {
+        for (int i = block.first_slot; i < block.end_slot; ++i) {
+          // Where the wall was when it was centred.
+          const Vec<Dim> x = stay_[index(i)].centre + all_walls[w].point - wall_centre_[w];
+          const double margin = (margin_[i] + wall_margin_[w]) * kHair;
+          if (!(all_walls[w].foot(x).distance <= radius[i] + margin)) continue;
+          const auto& pairs = block.walls.pairs();
+          if (std::binary_search(pairs.begin(), pairs.end(), WallPair{i, static_cast<int>(w)})) {
+            continue;
+          }
+          defects.push_back("slot " + std::to_string(i) + " and wall " + all_walls[w].name +
+                            " are within reach and not listed");
+        }
       }
     }
   }

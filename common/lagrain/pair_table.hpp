@@ -9,6 +9,7 @@
 #include <array>
 #include <compare>
 #include <cstddef>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -71,6 +72,14 @@ class PairTable {
     pairs_.swap(fresh);
   }
 
+  /// Whether the pairs are sorted, each is there once, and each has a memory.
+  bool sound() const {
+    const auto whole = [&](const auto& row) { return row.size() == pairs_.size(); };
+    return std::adjacent_find(pairs_.begin(), pairs_.end(), std::greater_equal<P>()) ==
+               pairs_.end() &&
+           std::all_of(memory_.begin(), memory_.end(), whole);
+  }
+
   /// Adds a pair without a past.
   /// @returns false if it is there already
   bool insert(const P& pair) {
@@ -83,6 +92,7 @@ class PairTable {
   }
 
  private:
+  friend struct AuditProbe;
   using Rows = std::array<std::vector<double>, static_cast<std::size_t>(kReals)>;
 
   std::vector<P> pairs_;

@@ -2,6 +2,7 @@
 /// @file
 /// Which balls meet, found by walking in a regular triangulation.
 
+#include <lagrain/contact_search.hpp>
 #include <lagrain/neighbourhood.hpp>
 #include <lagrain/triangulation.hpp>
 #include <lagrain/vec.hpp>
@@ -12,6 +13,7 @@
 #include <cstdint>
 #include <numeric>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace lagrain {
@@ -115,6 +117,8 @@ class ReachList {
     for (const int j : apart_) link_if_met(i, j);
   }
 
+  /// Where ball i is now.
+  const Ball& ball(int i) const { return balls_[index(i)]; }
   /// How many balls are compared with each one that moves.
   std::size_t apart() const { return apart_.size(); }
 
@@ -129,7 +133,44 @@ class ReachList {
     for (const int j : more_[index(i)]) f(j);
   }
 
+  /// Checks the list against a search from nothing, and what is kept for walks; empty means valid.
+  /// @param t  as in build()
+  template <RegularTriangulation<Dim> T>
+  std::vector<std::string> audit(const T& t) const {
+    std::vector<std::string> defects;
+    const auto is_ball = [&](int i) { return i >= 0 && index(i) < balls_.size(); };
+    if (sites_.size() != balls_.size() || stamps_.size() != balls_.size() ||
+        first_.size() != balls_.size() + 1 || first_.back() != partners_.size() ||
+        !std::is_sorted(first_.begin(), first_.end()) ||
+        !std::all_of(apart_.begin(), apart_.end(), is_ball)) {
+      return {"the parts of the list do not fit together"};
+    }
+    audit_pairs(defects);
+    audit_guests(defects);
+    ReachList fresh;
+    fresh.list_edges(t);
+    if (fresh.first_edge_ != first_edge_ || fresh.edge_ends_ != edge_ends_) {
+      defects.push_back("the edges are not those of T");
+    }
+    for (int k = 0; k < t.size(); ++k) {
+      const Ball& site = sites_[index(k)];
+      if (site.centre == t.site(k) && site.radius * site.radius == t.weight(k)) continue;
+      defects.push_back("site " + std::to_string(k) + " is not that of T");
+    }
+    const auto known = [&](int i) {
+      return edge_ends_.empty() || std::find(apart_.begin(), apart_.end(), i) != apart_.end();
+    };
+    if (!std::all_of(t.hidden().begin(), t.hidden().end(), known)) {
+      defects.push_back("a hidden ball is not compared with all others");
+    }
+    if (std::any_of(stamps_.begin(), stamps_.end(), [&](auto stamp) { return stamp > stamp_; })) {
+      defects.push_back("a stamp is ahead of its time");
+    }
+    return defects;
+  }
+
  private:
+  friend struct AuditProbe;
   /// Of a squared distance: what touches by no more than rounding is taken for meeting.
   static constexpr double kRounding = 1 + 1e-9;
   /// Balls that ask for a larger L, in squared radii of the site, would make all walks long.
@@ -172,6 +213,64 @@ class ReachList {
     more_[index(i)].push_back(j);
     more_[index(j)].push_back(i);
     added_.push_back({std::min(i, j), std::max(i, j)});
+  }
+
+  /// All pairs that meet are listed, none twice, and each ball knows its partners.
+  void audit_pairs(std::vector<std::string>& defects) const {
+    const auto count = static_cast<Eigen::Index>(balls_.size());
+    std::vector<Pair> listed(pairs_.begin(), pairs_.end());
+    if (!std::is_sorted(listed.begin(), listed.end())) defects.push_back("pairs are not sorted");
+    listed.insert(listed.end(), added_.begin(), added_.end());
+    std::sort(listed.begin(), listed.end());
+    if (std::adjacent_find(listed.begin(), listed.end()) != listed.end()) {
+      defects.push_back("a pair is listed twice");
+    }
+    std::vector<Pair> ends, partners;  // each pair from both ends
+    for (const Pair& pair : listed) ends.insert(ends.end(), {pair, {pair.j, pair.i}});
+    for (int i = 0; i < count; ++i) {
+      for_each_partner(i, [&](int j) { partners.push_back({i, j}); });
+    }
+    std::sort(ends.begin(), ends.end());
+    std::sort(partners.begin(), partners.end());
+    if (ends != partners) defects.push_back("partners are not those of the pairs");
+
+    Columns<Dim> centre(Dim, count);
+    Eigen::VectorXd radius(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      centre.col(i) = balls_[static_cast<std::size_t>(i)].centre;
+      radius[i] = balls_[static_cast<std::size_t>(i)].radius;
+    }
+    ContactSearch<Dim> search;
+    for (const Pair& pair : search.find(centre, radius)) {
+      if (std::binary_search(listed.begin(), listed.end(), pair)) continue;
+      defects.push_back("balls " + std::to_string(pair.i) + " and " + std::to_string(pair.j) +
+                        " meet and are not listed");
+    }
+  }
+
+  /// A ball that has moved is compared with all others, or a guest of a site whose ball holds it
+  /// when enlarged by widest_.
+  void audit_guests(std::vector<std::string>& defects) const {
+    std::vector<char> held(balls_.size(), 0);
+    for (const int i : apart_) held[index(i)] = 1;
+    std::size_t met = 0;
+    for (std::size_t site = 0; site < sites_.size(); ++site) {
+      const Ball &b = sites_[site], &now = balls_[site];
+      if (b.centre == now.centre && b.radius == now.radius) held[site] = 1;
+      const double wide = std::sqrt(b.radius * b.radius + widest_) * kRounding;
+      for (int g = first_guest_[site]; g >= 0 && met <= guests_.size();
+           g = guests_[index(g)].next) {
+        ++met;
+        const Ball& guest = balls_[index(guests_[index(g)].ball)];
+        // It may have gone on since, to another site.
+        if ((guest.centre - b.centre).norm() + guest.radius <= wide)
+          held[index(guests_[index(g)].ball)] = 1;
+      }
+    }
+    if (met != guests_.size()) defects.push_back("guests are lost");
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      if (held[i] == 0) defects.push_back("ball " + std::to_string(i) + " is nobody's guest");
+    }
   }
 
   /// A site of T near the ball of i: the walk to it goes down the power of the ball's centre, along

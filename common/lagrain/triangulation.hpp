@@ -56,6 +56,10 @@ concept RegularTriangulation = requires(T t, const T ct, std::span<const int> mo
   { ct.edges() } -> std::same_as<std::span<const EdgeList::Edge>>;
   { ct.hidden() } -> std::convertible_to<std::span<const int>>;
   { ct.size() } -> std::convertible_to<int>;
+  { ct.site(int{}) } -> std::same_as<Vec<Dim>>;
+  { ct.weight(int{}) } -> std::same_as<double>;
+  // What is wrong with it, checked exactly; nothing is.
+  { ct.audit().empty() } -> std::same_as<bool>;
 };
 
 }  // namespace lagrain

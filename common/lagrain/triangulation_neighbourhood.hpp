@@ -4,6 +4,7 @@
 /// the grains lazily, and misses nothing.
 
 #include <lagrain/check.hpp>
+#include <lagrain/contact_search.hpp>
 #include <lagrain/neighbourhood.hpp>
 #include <lagrain/random.hpp>
 #include <lagrain/reach_list.hpp>
@@ -15,6 +16,8 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -101,6 +104,11 @@ class TriangulationNeighbourhood {
 
     collect_near(x, radius, margin, pairs);
     if (!uncertain_.empty()) search_around_uncertain(x, radius, margin, pairs);
+#ifdef LAGRAIN_AUDIT
+    std::vector<int> all(static_cast<std::size_t>(size()));
+    std::iota(all.begin(), all.end(), 0);
+    detail::expect_no_defect(name(), audit(radius, all, place, margin));
+#endif
   }
 
   /// Also adds to the strays the grains that got new references.
@@ -121,10 +129,38 @@ class TriangulationNeighbourhood {
         t_.for_each_neighbour(i, add);
       }
     }
+#ifdef LAGRAIN_AUDIT
+    detail::expect_no_defect(name(), audit(radius, strays, place, margin));
+#endif
     return true;
   }
 
+  /// Checks T, what is kept beside it, and the promise that rests on both; empty means valid.
+  /// @param radius   those of the last question [m]
+  /// @param centred  grains that were centred in it
+  /// @param place    where they were then, and margin what it answered
+  template <class Place>
+  std::vector<std::string> audit(const Eigen::VectorXd& radius, std::span<const int> centred,
+                                 Place&& place, const Eigen::VectorXd& margin) const {
+    std::vector<std::string> defects;
+    for (const auto& defect : t_.audit()) defects.push_back("T: " + defect.sentence);
+    if (!defects.empty()) return defects;
+    audit_skins(radius, defects);
+    if (leaping_) {
+      for (const std::string& defect : reach_.audit(t_)) defects.push_back("walks: " + defect);
+    } else {
+      audit_certificate(radius, defects);
+    }
+    for (const int i : centred) {
+      if (laziness_.follow && !(margin[i] <= room(i, place(i)))) {
+        defects.push_back("grain " + std::to_string(i) + " has a margin beyond its skin");
+      }
+    }
+    return defects;
+  }
+
  private:
+  friend struct AuditProbe;
   /// Where a grain stands in an update: not concerned, in moved_ without a new reference, with one.
   enum class State : unsigned char { at_rest, waiting, placed };
   /// What a new reference must keep from a neighbour's: see renew_one.
@@ -133,8 +169,12 @@ class TriangulationNeighbourhood {
     double forward;  // the way towards the neighbour's far side, along the motion [m]
   };
 
-  int size() const { return static_cast<int>(weight_.size()); }
-  State& state(int i) { return state_[static_cast<std::size_t>(i)]; }
+  int size() const {
+    return static_cast<int>(weight_.size());
+  }
+  State& state(int i) {
+    return state_[static_cast<std::size_t>(i)];
+  }
 
   void build(const Columns<Dim>& x, const Eigen::VectorXd& radius) {
     Random random(1);
@@ -177,7 +217,9 @@ class TriangulationNeighbourhood {
 
   /// Whether what was spent on single grains since the last build would have paid for a leap: so
   /// the choice of mode costs at most about twice what the better one does.
-  bool leap_is_due() const { return laziness_.leap && spent_ > kLeap * size(); }
+  bool leap_is_due() const {
+    return laziness_.leap && spent_ > kLeap * size();
+  }
 
   /// Leaps, or follows again, if it is time to. Calm is judged by the margins that are wanted,
   /// which follow speeds above a floor that is the same for all.
@@ -422,6 +464,55 @@ class TriangulationNeighbourhood {
   static void sort_unique(std::vector<int>& list) {
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+
+  /// Weights are those of radii and skins; the references are T's sites, or, while T leaps, the
+  /// balls that walks know; no grain waits.
+  void audit_skins(const Eigen::VectorXd& radius, std::vector<std::string>& defects) const {
+    for (int i = 0; i < size(); ++i) {
+      const double inflated = radius[i] + skin_[i];
+      bool sound = skin_[i] > 0 && weight_[i] == inflated * inflated &&
+                   state_[static_cast<std::size_t>(i)] == State::at_rest;
+      if (leaping_) {
+        const auto ball = reference_ball(radius, i);
+        sound =
+            sound && reach_.ball(i).centre == ball.centre && reach_.ball(i).radius == ball.radius;
+      } else {
+        sound = sound && t_.site(i) == reference_.col(i) && t_.weight(i) == weight_[i];
+      }
+      if (!sound)
+        defects.push_back("the reference of grain " + std::to_string(i) + " is not sound");
+    }
+    if (!moved_.empty()) defects.push_back("grains wait for new references");
+  }
+
+  /// Every pair of inflated reference spheres that meet is an edge, or has an uncertain end; and so
+  /// has every edge that fails.
+  void audit_certificate(const Eigen::VectorXd& radius, std::vector<std::string>& defects) const {
+    if (!laziness_.certify) return;
+    const auto uncertain = [&](int i) {
+      return std::binary_search(uncertain_.begin(), uncertain_.end(), i);
+    };
+    for (const auto& [i, j] : t_.edges()) {
+      if (passes(i, j) || (uncertain(i) && uncertain(j))) continue;
+      defects.push_back("edge " + std::to_string(i) + " " + std::to_string(j) + " fails unseen");
+    }
+    const auto is_grain = [&](int i) { return i >= 0 && i < size(); };
+    if (!std::all_of(uncertain_.begin(), uncertain_.end(), is_grain)) {
+      defects.push_back("what is uncertain is no grain");
+    }
+    for (const int i : t_.hidden()) {
+      if (!uncertain(i)) defects.push_back("grain " + std::to_string(i) + " is hidden unseen");
+    }
+    ContactSearch<Dim> search;
+    for (const auto& [i, j] : search.find(reference_, radius + skin_)) {
+      if (uncertain(i) || uncertain(j) ||
+          std::ranges::binary_search(t_.edges(), EdgeList::Edge{i, j})) {
+        continue;
+      }
+      defects.push_back("grains " + std::to_string(i) + " and " + std::to_string(j) +
+                        " meet and are no edge");
+    }
   }
 
   /// The edges of T within reach; or, while T leaps, the pairs of reference spheres that meet.

@@ -104,8 +104,11 @@ class Topology2 {
   bool at_rest(int triangle, int last_mark) const {
     return triangles_[index(triangle)].flags == 0 && mark(triangle) <= last_mark;
   }
+  /// The dead slots, of which the last is taken next.
+  std::span<const int> free_slots() const { return free_; }
 
  private:
+  friend struct AuditProbe;
   static constexpr int kDead = -2;
   struct alignas(32) Triangle {
     int vertex[3];

@@ -198,6 +198,7 @@ class Triangulation<2> {
   void try_hidden();
   void begin();
   UpdateReport finish();
+  void expect_valid() const;
 
   std::vector<Site2> sites_;   // by id
   std::vector<Site2> before_;  // the same at rest; during a move the places before it

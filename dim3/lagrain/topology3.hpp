@@ -136,8 +136,11 @@ class Topology3 {
   /// Whether a cell is as it should be between updates: no flag is set, and its mark is of this
   /// epoch or of one before.
   bool at_rest(int cell) const { return flags_[index(cell)] == 0 && mark_[index(cell)] <= epoch_; }
+  /// The dead slots, of which the last is taken next.
+  std::span<const int> free_slots() const { return free_; }
 
  private:
+  friend struct AuditProbe;
   static constexpr int kDead = -2;
   struct alignas(32) Cell {
     Quad vertex;

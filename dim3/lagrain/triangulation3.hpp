@@ -45,8 +45,8 @@ namespace lagrain {
 /// 2. Flip facets that are not locally regular: 2-3, 3-2, 4-4, and 4-1 for sites that are hidden
 ///    now. Each flip lowers the lifted surface, so this ends.
 /// 3. Where a facet stays that cannot be flipped, the tetrahedra around it are triangulated anew,
-///    as few as possible: the regular triangulation of their sites replaces them if it holds their
-///    boundary, else the cavity grows by one ring.
+///    as few as possible: the regular triangulation of their sites replaces them if their boundary
+///    is one sphere and it holds that, else the cavity grows by one ring.
 /// 4. Positive tetrahedra and a hull that goes round once make a triangulation; with all facets
 ///    locally regular it is the regular one. If any of this fails, build anew.
 /// 5. Insert what was taken out, and try the hidden sites.
@@ -54,10 +54,14 @@ namespace lagrain {
 /// the regular triangulation of its neighbours fills its star.
 ///
 /// Why flips may be trusted while tetrahedra are inverted: T, the vertex at infinity included, maps
-/// a 3-sphere onto a 3-sphere. Moving sites and exchanging the two sides of a flip change this map,
-/// but not how many times it covers space: once. Positive tetrahedra cannot cancel, so as soon as
-/// all are positive every point lies in one of them. An infinite tetrahedron counts as positive if
-/// it does not see a fixed point in the middle.
+/// a 3-sphere onto a 3-sphere. Moving sites changes this map, but not how many times it covers
+/// space: once. Nor does the exchange of a ball of tetrahedra for another with the same boundary.
+/// (Where the hull takes part it may, and the times are counted.) Positive tetrahedra cannot
+/// cancel, so as soon as all are positive every point lies in one of them. An infinite tetrahedron
+/// counts as positive if it does not see a fixed point in the middle.
+///
+/// Until then T may be folded: two tetrahedra may overlap, two edges may join the same two sites,
+/// and the stars of some sites together need be no ball. Nothing here stands on the contrary.
 ///
 /// Representation: Topology3, about 300 bytes per site. Flat sets are legal: a set of dimension() k
 /// < 3 is joined to 3 - k auxiliary sites outside it. The cone over a regular triangulation is
@@ -262,6 +266,7 @@ class Triangulation<3> {
   void try_hidden();
   void begin();
   UpdateReport finish();
+  void expect_valid() const;
 
   int size_ = 0;
   std::vector<Site3> sites_;    // by id, then room for three auxiliary sites

@@ -12,7 +12,7 @@ using namespace lagrain::test;
 
 namespace {
 
-constexpr int kBeyondBruteForce = ContactAudit<2>::kBruteForceLimit + 500;
+constexpr int kBeyondBruteForce = ContactSearch<2>::kBruteForceLimit + 500;
 
 }  // namespace
 
