@@ -5,91 +5,24 @@
 #include <lagrain/triangulation2.hpp>
 
 #include "dim2/sets2.hpp"
+#include "oracle/cgal2.hpp"
 #include "support/cases.hpp"
 
-#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
-#include <CGAL/Regular_triangulation_2.h>
-#include <CGAL/Triangulation_vertex_base_with_info_2.h>
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <vector>
 
 using namespace lagrain;
-using test::Edge;
 
 namespace {
 
-using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
-using Base =
-    CGAL::Triangulation_vertex_base_with_info_2<int, Kernel,
-                                                CGAL::Regular_triangulation_vertex_base_2<Kernel>>;
-using Oracle = CGAL::Regular_triangulation_2<
-    Kernel,
-    CGAL::Triangulation_data_structure_2<Base, CGAL::Regular_triangulation_face_base_2<Kernel>>>;
-
-Oracle::Weighted_point weighted(const test::Sites& s, int i) {
-  return {Oracle::Bare_point(s.x(0, i), s.x(1, i)), s.w[i]};
-}
-
-/// What CGAL says, one site at a time.
-struct Answer {
-  std::vector<Edge> edges;    // all, sorted
-  std::vector<Edge> certain;  // those with a dual of positive length
-  std::vector<int> visible;   // sorted
-  bool ties = false;
-};
-
-Answer ask(const test::Sites& s, const std::vector<int>& ids) {
-  Oracle oracle;
-  for (const int i : ids) {
-    const auto v = oracle.insert(weighted(s, i));
-    if (v != Oracle::Vertex_handle()) v->info() = i;
-  }
-  REQUIRE(oracle.is_valid());
-  Answer answer;
-  for (auto v = oracle.finite_vertices_begin(); v != oracle.finite_vertices_end(); ++v) {
-    answer.visible.push_back(v->info());
-  }
-  std::sort(answer.visible.begin(), answer.visible.end());
-  for (auto e = oracle.finite_edges_begin(); e != oracle.finite_edges_end(); ++e) {
-    const int i = e->first->vertex(Oracle::cw(e->second))->info();
-    const int j = e->first->vertex(Oracle::ccw(e->second))->info();
-    const Edge edge{std::min(i, j), std::max(i, j)};
-    answer.edges.push_back(edge);
-    if (oracle.dimension() < 2) continue;
-    const auto f = e->first, g = f->neighbor(e->second);
-    const bool tie =
-        !oracle.is_infinite(f) && !oracle.is_infinite(g) &&
-        oracle.power_test(f, g->vertex(g->index(f))->point()) == CGAL::ON_ORIENTED_BOUNDARY;
-    answer.ties = answer.ties || tie;
-    if (!tie) answer.certain.push_back(edge);
-  }
-  std::sort(answer.edges.begin(), answer.edges.end());
-  std::sort(answer.certain.begin(), answer.certain.end());
-  return answer;
-}
-
-/// No site is strictly in conflict with any triangle, by CGAL's own test.
-bool power_valid(const Triangulation<2>& t, const test::Sites& s, const std::vector<int>& ids) {
-  bool valid = true;
-  const auto test = Kernel().power_side_of_oriented_power_circle_2_object();
-  t.for_each_triangle([&](int a, int b, int c) {
-    for (const int d : ids) {
-      if (d == a || d == b || d == c) continue;
-      valid = valid && test(weighted(s, a), weighted(s, b), weighted(s, c), weighted(s, d)) !=
-                           CGAL::ON_POSITIVE_SIDE;
-    }
-  });
-  return valid;
-}
-
 void check_against_cgal(const Triangulation<2>& t, const test::Sites& s,
                         const std::vector<int>& ids, bool general) {
-  const Answer answer = ask(s, ids);
+  const auto answer = test::ask(s, ids);
   const auto ours = test::edges(t);
   CHECK(test::audited(t) == "");
-  CHECK(power_valid(t, s, ids));
+  CHECK(test::power_sides(t, s, ids).valid);
   if (general) {
     CHECK(!answer.ties);
     CHECK(ours == answer.edges);
@@ -173,7 +106,7 @@ TEST_SUITE("triangulation2 against CGAL") {
   TEST_CASE("on a lattice with ties every edge with a dual of positive length is there") {
     for (const test::Sites& s : {test::square_lattice(8, 1), test::hexagonal_lattice(8, 1)}) {
       CAPTURE(s.name);
-      const Answer answer = ask(s, test::all_ids(s.size()));
+      const auto answer = test::ask(s, test::all_ids(s.size()));
       const auto ours = test::edges(test::built(s));
 
       CHECK(std::includes(ours.begin(), ours.end(), answer.certain.begin(), answer.certain.end()));

@@ -5,12 +5,9 @@
 #include <lagrain/triangulation3.hpp>
 
 #include "dim3/sets3.hpp"
+#include "oracle/cgal3.hpp"
 #include "support/cases.hpp"
 
-#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Regular_triangulation_3.h>
-#include <CGAL/Triangulation_vertex_base_with_info_3.h>
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -21,156 +18,16 @@
 #include <vector>
 
 using namespace lagrain;
-using test::Edge;
-using test::Four;
+using test::FastKernel;
 
 namespace {
 
-template <class Kernel>
-using OracleOf = CGAL::Regular_triangulation_3<
-    Kernel, CGAL::Triangulation_data_structure_3<
-                CGAL::Triangulation_vertex_base_with_info_3<
-                    int, Kernel, CGAL::Regular_triangulation_vertex_base_3<Kernel>>,
-                CGAL::Regular_triangulation_cell_base_3<Kernel>>>;
-
-using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
-using Oracle = OracleOf<Kernel>;
-// Its predicates are exact too; for large sets.
-using FastKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using FastOracle = OracleOf<FastKernel>;
-
-template <class Kernel>
-typename Kernel::Weighted_point_3 weighted(const test3::Sites& s, int i) {
-  return {typename Kernel::Point_3(s.x(0, i), s.x(1, i), s.x(2, i)), s.w[i]};
-}
-
-Edge sorted(int i, int j) {
-  return {std::min(i, j), std::max(i, j)};
-}
-
-/// What CGAL says, one site at a time.
-struct Answer {
-  int dimension = -1;
-  std::vector<Edge> edges;       // all, sorted
-  std::vector<Edge> certain;     // those that are there however ties are decided
-  std::vector<Four> tetrahedra;  // sorted
-  std::vector<int> visible;      // sorted
-  bool ties = false;
-};
-
-template <class Oracle>
-Answer read(const Oracle& oracle) {
-  Answer answer;
-  answer.dimension = oracle.dimension();
-  for (auto v = oracle.finite_vertices_begin(); v != oracle.finite_vertices_end(); ++v) {
-    answer.visible.push_back(v->info());
-  }
-  std::sort(answer.visible.begin(), answer.visible.end());
-  for (auto e = oracle.finite_edges_begin(); e != oracle.finite_edges_end(); ++e) {
-    answer.edges.push_back(
-        sorted(e->first->vertex(e->second)->info(), e->first->vertex(e->third)->info()));
-  }
-  std::sort(answer.edges.begin(), answer.edges.end());
-  if (oracle.dimension() < 3) return answer;
-  for (auto c = oracle.finite_cells_begin(); c != oracle.finite_cells_end(); ++c) {
-    Four four;
-    for (int k = 0; k < 4; ++k) four[static_cast<std::size_t>(k)] = c->vertex(k)->info();
-    std::sort(four.begin(), four.end());
-    answer.tetrahedra.push_back(four);
-  }
-  std::sort(answer.tetrahedra.begin(), answer.tetrahedra.end());
-  return answer;
-}
-
-/// Ties of a set that spans space. An edge is certain if its dual has an area: it runs through more
-/// than two power centres, where a ray to infinity counts as one.
-void find_ties(const Oracle& oracle, Answer& answer) {
-  const auto power_side = Kernel().power_side_of_oriented_power_sphere_3_object();
-  const auto orientation_of = Kernel().orientation_3_object();
-  enum class Pair { different, tied, tied_on_hull };
-  // Do a cell and its neighbour have one power centre, or is their ray the same?
-  const auto compare = [&](Oracle::Cell_handle c, int i) {
-    const auto d = c->neighbor(i);
-    const bool c_out = oracle.is_infinite(c), d_out = oracle.is_infinite(d);
-    if (c_out != d_out) return Pair::different;
-    std::vector<Kernel::Weighted_point_3> p;
-    for (int k = 0; k < 4; ++k) {
-      if (!oracle.is_infinite(c->vertex(k))) p.push_back(c->vertex(k)->point());
-    }
-    const auto q = d->vertex(d->index(c))->point();
-    if (!c_out) {
-      return power_side(p[0], p[1], p[2], p[3], q) == CGAL::ON_ORIENTED_BOUNDARY ? Pair::tied
-                                                                                 : Pair::different;
-    }
-    const bool flat =
-        orientation_of(p[0].point(), p[1].point(), p[2].point(), q.point()) == CGAL::COPLANAR;
-    return flat && power_side(p[0], p[1], p[2], q) == CGAL::ON_ORIENTED_BOUNDARY
-               ? Pair::tied_on_hull
-               : Pair::different;
-  };
-  for (auto e = oracle.finite_edges_begin(); e != oracle.finite_edges_end(); ++e) {
-    auto c = oracle.incident_cells(*e);
-    const auto first = c;
-    int different = 0;
-    bool area = true;  // two rays on one line have none between them
-    do {
-      const Oracle::Cell_handle now = c;
-      ++c;
-      const Pair pair = compare(now, now->index(Oracle::Cell_handle(c)));
-      answer.ties = answer.ties || pair != Pair::different;
-      area = area && pair != Pair::tied_on_hull;
-      different += pair == Pair::different;
-    } while (c != first);
-    if (area && different > 2) {
-      answer.certain.push_back(
-          sorted(e->first->vertex(e->second)->info(), e->first->vertex(e->third)->info()));
-    }
-  }
-  std::sort(answer.certain.begin(), answer.certain.end());
-}
-
-Answer ask(const test3::Sites& s, const std::vector<int>& ids) {
-  Oracle oracle;
-  for (const int i : ids) {
-    const auto v = oracle.insert(weighted<Kernel>(s, i));
-    if (v != Oracle::Vertex_handle()) v->info() = i;
-  }
-  REQUIRE(oracle.is_valid());
-  Answer answer = read(oracle);
-  if (answer.dimension == 3) find_ties(oracle, answer);
-  return answer;
-}
-
-/// A large set, inserted in an order that is good for it.
-Answer ask_fast(const test3::Sites& s) {
-  std::vector<std::pair<FastKernel::Weighted_point_3, int>> points;
-  for (int i = 0; i < s.size(); ++i) points.emplace_back(weighted<FastKernel>(s, i), i);
-  FastOracle oracle;
-  oracle.insert(points.begin(), points.end());
-  return read(oracle);
-}
-
-/// No site is strictly in conflict with any tetrahedron, by CGAL's own test.
-bool power_valid(const Triangulation<3>& t, const test3::Sites& s, const std::vector<int>& ids) {
-  bool valid = true;
-  const auto test = FastKernel().power_side_of_oriented_power_sphere_3_object();
-  const auto point = [&](int i) { return weighted<FastKernel>(s, i); };
-  t.for_each_tetrahedron([&](int a, int b, int c, int d) {
-    const auto pa = point(a), pb = point(b), pc = point(c), pd = point(d);
-    for (const int e : ids) {
-      if (e == a || e == b || e == c || e == d) continue;
-      valid = valid && test(pa, pb, pc, pd, point(e)) != CGAL::ON_POSITIVE_SIDE;
-    }
-  });
-  return valid;
-}
-
 void check_against_cgal(const Triangulation<3>& t, const test3::Sites& s,
                         const std::vector<int>& ids, bool general) {
-  const Answer answer = ask(s, ids);
+  const auto answer = test::ask(s, ids);
   const auto ours = test::edges(t);
   CHECK(test::audited(t) == "");
-  CHECK(power_valid(t, s, ids));
+  CHECK(test::power_sides(t, s, ids).valid);
   CHECK(t.dimension() == answer.dimension);
   // A site that is tied with its own cell may be hidden or not, and edges end at it or pass it.
   if (test::visible(t) == answer.visible) {
@@ -179,7 +36,7 @@ void check_against_cgal(const Triangulation<3>& t, const test3::Sites& s,
   if (general) {
     CHECK(!answer.ties);
     CHECK(ours == answer.edges);
-    CHECK(test::tetrahedra(t) == answer.tetrahedra);
+    CHECK(test::tetrahedra(t) == answer.simplices);
     CHECK(test::visible(t) == answer.visible);
   }
 }
@@ -232,7 +89,7 @@ TEST_SUITE("triangulation3 against CGAL") {
           for (std::size_t k = 0; k < 5; ++k) {
             const int i = random.below(s.size());
             p[k] = {s.x(0, i), s.x(1, i), s.x(2, i), s.w[i]};
-            q[k] = weighted<FastKernel>(s, i);
+            q[k] = test::weighted<FastKernel>(s, i);
           }
 
           const int side = orientation(p[0], p[1], p[2], p[3]);
@@ -323,10 +180,10 @@ TEST_SUITE("triangulation3 against CGAL: a large set") {
       for (const double distance : {0.01, 0.05, 0.17, 1.0}) {
         CAPTURE(distance);
         const auto agree = [&](const UpdateReport& report, const std::string& what) {
-          const Answer answer = ask_fast(s);
+          const auto answer = test::ask_fast(s, test::all_ids(s.size()));
           // Both are long: compared in the check they would be printed.
           const bool edges_agree = test::edges(t) == answer.edges;
-          const bool tetrahedra_agree = test::tetrahedra(t) == answer.tetrahedra;
+          const bool tetrahedra_agree = test::tetrahedra(t) == answer.simplices;
           CHECK(edges_agree);
           CHECK(tetrahedra_agree);
           CHECK(test::visible(t).size() == answer.visible.size());
