@@ -69,6 +69,7 @@ void Triangulation<3>::rebuild() {
   topology_.reserve_cells(7 * present.size());
   edges_.clear();
   hidden_.clear();
+  last_ = 0;
   insert_all(present, nullptr);
   if (large) {
     sort_spatially(present, sites_, false);

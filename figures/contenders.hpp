@@ -105,6 +105,8 @@ class Oracle {
   }
 
   static const char* name() { return "oracle"; }
+  /// It knows the contacts, not the pairs within reach.
+  static bool keeps_promise() { return false; }
 
   /// @throws ContractError beyond the end of the recorded run
   void near_pairs(const Columns<Dim>&, const Eigen::VectorXd&, Eigen::VectorXd& margin,

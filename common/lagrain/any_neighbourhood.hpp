@@ -32,6 +32,7 @@ class AnyNeighbourhood {
   }
   /// The grains have other numbers from now on.
   void forget() { held_->forget(); }
+  bool keeps_promise() const { return held_->keeps_promise(); }
   /// What the triangulation cost; null for other neighbourhoods.
   const TriangulationCost* cost() const { return held_->cost(); }
   /// Edges of the triangulation; 0 for other neighbourhoods.
@@ -46,6 +47,7 @@ class AnyNeighbourhood {
     virtual bool pairs_of(std::vector<int>&, const PlaceOf<Dim>&, const Eigen::VectorXd&,
                           Eigen::VectorXd&, std::vector<Pair>&) = 0;
     virtual void forget() = 0;
+    virtual bool keeps_promise() const = 0;
     virtual const TriangulationCost* cost() const = 0;
     virtual std::int64_t edges() const = 0;
   };
@@ -69,6 +71,7 @@ class AnyNeighbourhood {
     void forget() override {
       if constexpr (requires { neighbourhood.forget(); }) neighbourhood.forget();
     }
+    bool keeps_promise() const override { return lagrain::keeps_promise(neighbourhood); }
     const TriangulationCost* cost() const override {
       if constexpr (requires { neighbourhood.cost(); }) return &neighbourhood.cost();
       return nullptr;

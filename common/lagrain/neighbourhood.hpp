@@ -88,6 +88,14 @@ concept Neighbourhood = requires(N n, const Columns<Dim>& x, const Eigen::Vector
   { n.name() } -> std::convertible_to<const char*>;
 };
 
+/// Whether a neighbourhood keeps that promise. One that shows or measures what goes without says so
+/// by a `keeps_promise()` of its own; audits leave its pairs alone.
+template <class N>
+bool keeps_promise(const N& neighbourhood) {
+  if constexpr (requires { neighbourhood.keeps_promise(); }) return neighbourhood.keeps_promise();
+  return true;
+}
+
 /// Where a grain is [m].
 template <int Dim>
 using PlaceOf = std::function<Vec<Dim>(int)>;

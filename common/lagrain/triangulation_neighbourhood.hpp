@@ -81,6 +81,8 @@ class TriangulationNeighbourhood {
   const T& triangulation() const { return t_; }
   const TriangulationCost& cost() const { return cost_; }
   const Laziness& laziness() const { return laziness_; }
+  /// Without the certificate, or a T that follows, pairs may be missing.
+  bool keeps_promise() const { return laziness_.certify && laziness_.follow; }
 
   /// The grains have other numbers from now on: T is built anew at the next question.
   void forget() { reference_.resize(Dim, 0); }

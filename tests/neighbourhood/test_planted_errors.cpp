@@ -843,6 +843,9 @@ TEST_SUITE("planted_errors") {
     CHECK(report_of(t) == "");
     t.remove(0);
     CHECK(report_of(t) == "");
+    auto many = some_triangulation<S::Dim>();
+    many.build(Columns<S::Dim>(S::Dim, 0), Eigen::VectorXd(0));
+    CHECK(report_of(many) == "");
   }
 
   TEST_CASE_TEMPLATE("builds that audit every update throw what they find", S, Space<2>, Space<3>) {

@@ -327,6 +327,7 @@ TEST_SUITE("triangulation_neighbourhood") {
                             Triangulated<Dim>{laziness});
 
       CHECK(audited<Dim>(sim, 3000).missed > 0);
+      CHECK_FALSE(keeps_promise(sim.neighbourhood()));
     }
   }
 }
