@@ -168,11 +168,11 @@ class CellGrid {
     const auto range = [&](std::size_t d) {
       return std::pair{std::max(cell[d] - 1, 0), std::min(cell[d] + 1, shape_[d] - 1)};
     };
-    const auto [from, to] = range(kLast);
+    const std::pair<int, int> ends = range(kLast);
     const auto visit = [&](Index row) {
-      row[kLast] = from;
+      row[kLast] = ends.first;
       const int first = start_[flat(row)];
-      row[kLast] = to;
+      row[kLast] = ends.second;
       f(first, start_[flat(row) + 1]);
     };
     Index row{};
