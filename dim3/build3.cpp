@@ -270,8 +270,8 @@ bool Triangulation<3>::insert_visible(int site) {
   return true;
 }
 
-/// Of a site that will be joined to rim_ in place of hole_: the edges inside the hole go, and one
-/// to each site of the rim (noted as 2) comes.
+/// Notes what changes when a site is joined to rim_ in place of hole_: the edges inside the hole
+/// go, and one to each site of the rim (noted as 2) comes.
 void Triangulation<3>::note_edges_of_insertion(int site) {
   if (!edges_.live()) return;
   topology_.for_each_edge_of(hole_, [&](int a, int b, bool inside) {

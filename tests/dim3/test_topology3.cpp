@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 using namespace lagrain;
@@ -208,5 +209,58 @@ TEST_SUITE("topology3") {
     CHECK(!t.marked(2));
     CHECK(!t.exchange_flag(9, false));
     CHECK(!t.exchange_flag(8, false));
+  }
+
+  TEST_CASE("edges are what cells turn around, even where two join the same vertices") {
+    int doubled = 0;
+    for (int seed = 0; seed < test::cases(20, 1000); ++seed) {
+      CAPTURE(seed);
+      Random random(static_cast<std::uint64_t>(seed));
+      constexpr int kVertices = 8;
+      auto t = sphere(kVertices);
+      const auto any_cell = [&] {
+        int cell = random.below(t.slots());
+        while (!t.alive(cell)) cell = random.below(t.slots());
+        return cell;
+      };
+      for (int v = 4; v < kVertices; ++v) {
+        const int cell = any_cell();
+        insert_into(t, v, cell, 4 * cell + random.below(4));
+      }
+      std::vector<int> made;
+      for (int flips = 0; flips < 30; ++flips) {
+        flip_facet(t, 4 * any_cell() + random.below(4), made);
+        t.clear_marks();
+        std::vector<int> cells;
+        for (int cell = 0; cell < t.slots(); ++cell) {
+          if (!t.alive(cell)) continue;
+          t.set_mark(cell);
+          cells.push_back(cell);
+        }
+        std::vector<std::pair<int, int>> edges;
+        bool all_inside = true;
+        t.for_each_edge_of(cells, [&](int a, int b, bool inside) {
+          edges.push_back(std::minmax(a, b));
+          all_inside = all_inside && inside;
+        });
+        CHECK(all_inside);
+        // V - E + F - C = 0 with F = 2 C, the vertex at infinity included.
+        CHECK(static_cast<int>(edges.size()) == kVertices + 1 + t.cells());
+        std::sort(edges.begin(), edges.end());
+        doubled += std::adjacent_find(edges.begin(), edges.end()) != edges.end();
+
+        const int one = any_cell();
+        t.clear_marks();
+        t.set_mark(one);
+        int around = 0, inside_one = 0;
+        t.for_each_edge_of(std::array{one}, [&](int, int, bool inside) {
+          ++around;
+          inside_one += inside;
+        });
+        CHECK(around == 6);
+        CHECK(inside_one == 0);
+      }
+    }
+    CHECK(doubled > 0);
   }
 }
