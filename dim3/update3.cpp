@@ -3,6 +3,7 @@
 #include "cover.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lagrain {
 
@@ -49,27 +50,25 @@ bool Triangulation<3>::tiny() const {
 
 /// A point to see the hull from: the mean of the visible sites, auxiliary ones included.
 void Triangulation<3>::choose_middle() {
-  const Site3* first = nullptr;
-  // Relative to one of them, so that a far origin costs no digits; in a type in which sums of
-  // doubles do not overflow.
-  long double x = 0, y = 0, z = 0, count = 0;
-  const auto difference = [](double a, double b) {
-    return static_cast<long double>(a) - static_cast<long double>(b);
-  };
-  for (int id = 0; id < size_ + 3; ++id) {
-    if (topology_.corner_of(id) < 0) continue;
-    const Site3& s = sites_[index(id)];
-    if (first == nullptr) first = &s;
-    x += difference(s.x, first->x);
-    y += difference(s.y, first->y);
-    z += difference(s.z, first->z);
-    ++count;
+  // Where sums of coordinates overflow they are made of smaller shares.
+  for (const double share : {1.0, 0x1p-64}) {
+    const Site3* first = nullptr;
+    double x = 0, y = 0, z = 0, count = 0;
+    for (int id = 0; id < size_ + 3; ++id) {
+      if (topology_.corner_of(id) < 0) continue;
+      // Relative to one of them, so that a far origin costs no digits.
+      const Site3& s = sites_[index(id)];
+      if (first == nullptr) first = &s;
+      x += share * s.x - share * first->x;
+      y += share * s.y - share * first->y;
+      z += share * s.z - share * first->z;
+      ++count;
+    }
+    if (first == nullptr) return;
+    middle_ = {first->x + x / count / share, first->y + y / count / share,
+               first->z + z / count / share, 0};
+    if (std::isfinite(x) && std::isfinite(y) && std::isfinite(z)) return;
   }
-  if (first == nullptr) return;
-  const auto mean = [&](double from, long double sum) {
-    return static_cast<double>(static_cast<long double>(from) + sum / count);
-  };
-  middle_ = {mean(first->x, x), mean(first->y, y), mean(first->z, z), 0};
 }
 
 /// The same for a triangulation at rest, whose hull the mean may miss by rounding only.
@@ -358,10 +357,13 @@ bool Triangulation<3>::refill_around(int corner) {
       for (const int at : star_) cavity.push_back(at & ~3);
     }
     sort_unique(cavity);
-    if (cavity.size() > index(topology_.slots()) / 2) return false;
-    sites.clear();
-    collect_vertices(cavity, sites);
     for (int& cell : cavity) cell >>= 2;
+    unpinch(cavity);
+    if (cavity.size() > index(topology_.slots()) / 2) return false;
+    std::vector<int> corners;
+    for (const int cell : cavity) corners.push_back(4 * cell);
+    sites.clear();
+    collect_vertices(corners, sites);
     const std::size_t first = touched_.size();
     if (!refill(cavity, sites, nullptr)) continue;
     // An infinite cell of the small triangulation may not see the middle.
@@ -374,6 +376,32 @@ bool Triangulation<3>::refill_around(int corner) {
     return true;
   }
   return false;
+}
+
+/// Adds to a cavity the cells around each edge in which it touches itself: a cavity that does is no
+/// ball, and cannot be refilled.
+void Triangulation<3>::unpinch(std::vector<int>& cavity) {
+  topology_.clear_marks();
+  for (const int cell : cavity) topology_.set_mark(cell);
+  for (std::size_t k = 0; k < cavity.size(); ++k) {
+    for (const auto& [i, j] : Topology3::kEdges) {
+      // The cells around the edge between the other two corners.
+      int through = 4 * cavity[k] + i, other = 4 * cavity[k] + j, ways_in = 0;
+      do {
+        const bool was_inside = topology_.marked(through >> 2);
+        topology_.turn(through, other);
+        ways_in += !was_inside && topology_.marked(through >> 2);
+      } while (through >> 2 != cavity[k]);
+      if (ways_in < 2) continue;
+      do {
+        if (!topology_.marked(through >> 2)) {
+          topology_.set_mark(through >> 2);
+          cavity.push_back(through >> 2);
+        }
+        topology_.turn(through, other);
+      } while (through >> 2 != cavity[k]);
+    }
+  }
 }
 
 /// Flips until T is regular, given that it is so but for the facets of the cells in around_ and

@@ -258,6 +258,7 @@ class Triangulation<3> {
   bool drain();
   bool settle();
   bool refill_around(int corner);
+  void unpinch(std::vector<int>& cavity);
   bool flip_to_regular();
   static void sort_unique(std::vector<int>& list);
   void collect_around(std::span<const int> moved);
