@@ -32,6 +32,7 @@ class AnyNeighbourhood {
   }
   /// The grains have other numbers from now on.
   void forget() { held_->forget(); }
+  /// Whether it leaves out no pair.
   bool keeps_promise() const { return held_->keeps_promise(); }
   /// What the triangulation cost; null for other neighbourhoods.
   const TriangulationCost* cost() const { return held_->cost(); }
