@@ -2,7 +2,8 @@
 
 #include "box2d_world.hpp"
 #include "measure.hpp"
-#include "scene_run.hpp"
+
+#include <lagrain/numbers.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -42,13 +43,13 @@ std::unique_ptr<Engine> make_engine(const Scene<2>& scene, const EngineSettings&
   Scene<2> safe = scene;
   safe.time_step = {.fraction_of_contact = 1e-3};
   if (const auto* box2d = std::get_if<Box2dSettings>(&settings)) {
-    return std::make_unique<Box2dWorld>(*make_scene_run(safe, 1), *box2d);
+    return std::make_unique<Box2dWorld>(*make_run(safe, 1), *box2d);
   }
   const auto& ours = std::get<LagrainSettings>(settings);
   safe.law.stiffness = ours.stiffness;
   Scene<2> sprung = safe;
-  sprung.time_step.seconds = make_scene_run(safe, 1)->time_scales().safe_step / ours.refinement;
-  return std::make_unique<LagrainEngine>(make_scene_run(sprung, 1));
+  sprung.time_step.seconds = make_run(safe, 1)->time_scales().safe_step / ours.refinement;
+  return std::make_unique<LagrainEngine>(make_run(sprung, 1));
 }
 
 std::string name_of(const EngineSettings& settings) {

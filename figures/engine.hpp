@@ -51,9 +51,9 @@ struct Box2dSettings {
 
 using EngineSettings = std::variant<LagrainSettings, Box2dSettings>;
 
-/// An engine at time 0 of a scene, on one thread. Both take the grains where make_scene_run puts
+/// An engine at time 0 of a scene, on one thread. Both take the grains where make_run puts
 /// them.
-/// @throws SceneError as make_scene_run; ContractError where Box2D cannot run the scene
+/// @throws SceneError as make_run; ContractError where Box2D cannot run the scene
 std::unique_ptr<Engine> make_engine(const Scene<2>& scene, const EngineSettings& settings);
 
 /// "Box2D, 1/60 s, 8/3, CCD" (iterations for velocities and places; continuous collisions),

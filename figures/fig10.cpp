@@ -198,7 +198,7 @@ Outcome gas(const Choice& choice, const FigureOptions& options) {
   scene.duration = 0.3;
   const double steps = std::ceil(scene.duration / choice.step);
   scene.time_step.seconds = scene.duration / steps;
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
   const double start = run->start().balance();
   double spent = 0;
   Outcome outcome;
@@ -350,7 +350,7 @@ Pressure gas_pressure(const FigureOptions& options) {
   scene.law.stiffness = 1e8;  // hard: an overlap makes the disc smaller
   scene.duration = options.quick ? 1 : 6;
   scene.time_step.fraction_of_contact = 1.0 / 15;
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
   constexpr int kBlocks = 30;
   const double reach = side - 2 * kR;
   std::vector<double> blocks;

@@ -3,7 +3,6 @@
 
 #include "diagrams.hpp"
 #include "measure.hpp"
-#include "scene_run.hpp"
 
 #include <lagrain/all_pairs.hpp>
 #include <lagrain/cell_grid.hpp>
@@ -83,7 +82,7 @@ Misses stale_contacts(int count, double ratio, const FigureOptions& options) {
   Scene<Dim> scene = gas<Dim>(count, ratio);
   scene.neighbourhood = NeighbourhoodModel::linked_cells;
   scene.duration = options.quick ? 0.05 : Dim == 2 ? 0.6 : 0.35;
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
   Misses misses;
   Triangulation<Dim> t;
   Columns<Dim> reference;

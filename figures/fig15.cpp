@@ -4,7 +4,6 @@
 
 #include "diagrams.hpp"
 #include "measure.hpp"
-#include "scene_run.hpp"
 
 #include <lagrain/output.hpp>
 
@@ -94,7 +93,7 @@ std::vector<Row> measure(int count, const FigureOptions& options) {
   scene.friction = FrictionModel::elastic;
   scene.duration = options.quick ? 0.05 : 0.5;
   {
-    const auto settling = make_scene_run(scene);
+    const auto settling = make_run(scene);
     while (!settling->finished()) {
       settling->step();
       if (options.stop()) throw Interrupted();
@@ -111,7 +110,7 @@ std::vector<Row> measure(int count, const FigureOptions& options) {
   for (const Model& model : kModels) {
     scene.normal = model.normal;
     scene.friction = model.friction;
-    runs.push_back(make_scene_run(scene, 1));
+    runs.push_back(make_run(scene, 1));
     rows.push_back({model, runs.back()->size(), {}});
     for (int s = 0; s < warm_up; ++s) runs.back()->step();
   }

@@ -600,7 +600,7 @@ FigureResult draw_figure16(const FigureOptions& options) {
     scene.grains = {{.position = {0, 0}, .radius = kR}};
     return scene;
   }();
-  const Box2dWorld world(*make_scene_run(unit, 1), {});
+  const Box2dWorld world(*make_run(unit, 1), {});
   result.facts = {
       {"Box2D", "the library calls itself " + box2d_version() + " (so does release 2.4.1)"},
       {"Box2D's tolerance of length", rounded(100 * world.slop() / kR) + " % of a radius"},

@@ -9,7 +9,6 @@
 #include "diagrams.hpp"
 #include "measure.hpp"
 #include "rigid.hpp"
-#include "scene_run.hpp"
 
 #include <lagrain/output.hpp>
 
@@ -663,7 +662,7 @@ Diagram tunnelling_panel(Report& report, const FigureOptions& options, FigureRes
 }
 
 std::string slop_share(const Scene<2>& scene, const Box2dSettings& settings) {
-  const Box2dWorld world(*make_scene_run(scene, 1), settings);
+  const Box2dWorld world(*make_run(scene, 1), settings);
   return rounded(100 * world.slop() / world.radii().minCoeff(), 2) + " %";
 }
 

@@ -6,7 +6,6 @@
 // Below: a strip in time, the force on the slab, and where the energy went.
 
 #include "figure.hpp"
-#include "scene_run.hpp"
 
 #include <lagrain/output.hpp>
 #include <lagrain/paint.hpp>
@@ -407,7 +406,7 @@ std::string percent(double fraction) {
 FigureResult draw_figure5(const FigureOptions& options) {
   const std::filesystem::path file =
       options.scenes / (options.quick ? "rock_fall_quick.toml" : "rock_fall.toml");
-  const std::unique_ptr<Run<2>> run = make_scene_run(read_scene<2>(file));
+  const std::unique_ptr<Run<2>> run = make_run(read_scene<2>(file));
   Recorder recorder(*run, options);
   const Record record = recorder.run();
   const VideoReport video = recorder.finish_video();

@@ -4,7 +4,6 @@
 // the same.
 
 #include "figure.hpp"
-#include "scene_run.hpp"
 
 #include <lagrain/output.hpp>
 #include <lagrain/paint.hpp>
@@ -57,7 +56,7 @@ std::string label(double time) {
 
 FigureResult draw_figure8(const FigureOptions& options) {
   const std::filesystem::path file = options.scenes / "around_a_large_grain.toml";
-  const std::unique_ptr<Run<3>> run = make_scene_run(read_scene<3>(file));
+  const std::unique_ptr<Run<3>> run = make_run(read_scene<3>(file));
   const int large = 0;  // grains placed by hand come first
   VideoWriter video(options.out / "fig8.mp4", 25);
   std::vector<Columns<3>> kept;

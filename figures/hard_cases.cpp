@@ -1,6 +1,5 @@
 #include "hard_cases.hpp"
 
-#include "scene_run.hpp"
 
 #include <lagrain/output.hpp>
 #include <lagrain/restitution.hpp>
@@ -58,7 +57,7 @@ void fall(Scene<Dim>& scene) {
 template <int Dim>
 void step_widely(Scene<Dim>& scene) {
   scene.time_step.fraction_of_contact = 1e-3;
-  scene.time_step.seconds = make_scene_run(scene, 1)->time_scales().safe_step;
+  scene.time_step.seconds = make_run(scene, 1)->time_scales().safe_step;
 }
 
 template <int Dim>
@@ -191,7 +190,7 @@ Scene<Dim> crystal_scene(Crystal crystal, const Vec<Dim>& corner) {
 template <int Dim>
 CrystalAtRest rest(Crystal crystal, const Checkpoint& checkpoint) {
   const Scene<Dim> scene = crystal_scene<Dim>(crystal, Vec<Dim>::Zero());
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
   const Columns<Dim> before = run->positions();
   CrystalAtRest result;
   watch(*run, kCrystalSteps, result, checkpoint);
@@ -237,7 +236,7 @@ Tower tower(int height, std::int64_t steps, const Checkpoint& checkpoint) {
   for (int k = 0; k < height; ++k) put<2>(scene, {0, (2 * k + 1) * kRadius});
   scene.walls.push_back(Wall<2>::half_space("floor", {0, 0}, {0, 1}));
   step_widely(scene);
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
 
   Tower result;
   const auto n = static_cast<std::size_t>(height);
@@ -294,7 +293,7 @@ HeavyOnLight heavy_on_light(const Checkpoint& checkpoint) {
   scene.grains.back().material = 1;
   add_tub<Dim>(scene, Vec<Dim>::Zero(), 4 * kRadius);
   step_widely(scene);
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
 
   HeavyOnLight result;
   watch(*run, kSteps, result, checkpoint);
@@ -345,7 +344,7 @@ GiantAndDust giant_and_dust(const Checkpoint& checkpoint) {
   dust.high = {kHigh, kHigh * kHigh / 2};
   dust.arrangement = Arrangement::random;
   scene.fills.push_back(dust);
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
   const Vec<2> before = run->positions().col(0);
 
   GiantAndDust result;
@@ -379,7 +378,7 @@ Wedge tiny_disc_between_giants(const Checkpoint& checkpoint) {
   put<2>(scene, {2 * kGiant, foot + std::sqrt(kTiny * (2 * kGiant + kTiny))}, kTiny);
   add_tub<2>(scene, {0, 0}, 4 * kGiant);
   step_widely(scene);
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
 
   Wedge result;
   watch(*run, std::llround(kSeconds / run->time_step()), result, checkpoint);
@@ -418,7 +417,7 @@ Row row_of_grains(bool slanted, const Checkpoint& checkpoint) {
   const double mass = kDensity * grain_volume<Dim>(kRadius);
   const double speed = kDeepest * kRadius * std::sqrt(2 * kStiffness / mass);
   scene.grains[0].velocity = speed * along;
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
 
   Row result;
   // The way of the impulse, with the time that it spends in contacts, and once more the gap.
@@ -448,18 +447,18 @@ OnePlace all_in_one_place(const Checkpoint& checkpoint) {
   scene.time_step.fraction_of_contact = 1.0 / 100;
   for (int k = 0; k < result.grains; ++k) put<Dim>(scene, Vec<Dim>::Ones());
   try {
-    make_scene_run(scene, 1);
+    make_run(scene, 1);
   } catch (const SceneError& error) {
     result.refused = error.what();
   }
   scene.largest_initial_overlap = 2;  // of the radius: all there is
   try {
-    make_scene_run(scene, 1);
+    make_run(scene, 1);
   } catch (const SimulationError& error) {
     result.stopped = error.what();
   }
   scene.largest_overlap = 2;
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
   result.pairs = static_cast<int>(run->near_pairs().size());
   watch(*run, kSteps, result.free, checkpoint, {}, 1);
   const Columns<Dim>& v = run->velocities();
@@ -480,7 +479,7 @@ FarAway far_from_origin(double distance, const Checkpoint& checkpoint) {
   FarAway result;
   double step = 0;
   const auto settled = [&](const Vec<2>& corner) {
-    const auto run = make_scene_run(crystal_scene<2>(Crystal::hexagonal, corner), 1);
+    const auto run = make_run(crystal_scene<2>(Crystal::hexagonal, corner), 1);
     watch(*run, kCrystalSteps, result, checkpoint);
     result.last_bit = last_bit_of(run->positions().cwiseAbs().maxCoeff()) / kRadius;
     step = run->time_step();
@@ -532,7 +531,7 @@ Scales nine_decades_of_radii(std::int64_t steps, const Checkpoint& checkpoint) {
     const Vec<2> place = Vec<2>(0, -kGiant) + (kGiant + radii[k]) * up;
     put<2>(scene, place, radii[k], -speed * up);
   }
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
 
   Scales result;
   watch(*run, steps, result, checkpoint);
@@ -567,13 +566,13 @@ FastGrain fast_grain(double way, int shots, const Checkpoint& checkpoint) {
   Scene<2> scene = stone<2>("fast grain", 1e7, 1);
   put<2>(scene, {0, 0});
   scene.grains[0].pinned = true;
-  const double step = make_scene_run(scene, 1)->time_step();
+  const double step = make_run(scene, 1)->time_step();
   for (int shot = 0; shot < shots; ++shot) {
     Scene<2> one = scene;
     // The first contact lies anywhere in a step.
     const double start = -2 - way * (shot + 0.5) / shots;
     put<2>(one, {start * kRadius, 0}, kRadius, {way * kRadius / step, 0});
-    const auto run = make_scene_run(one, 1);
+    const auto run = make_run(one, 1);
     // Long enough for a bounce (a contact lasts 25 steps or, against a pinned grain, 36), or to
     // come out.
     watch(*run, 60 + static_cast<std::int64_t>(5 / way), result, checkpoint, {}, 1);
@@ -615,7 +614,7 @@ std::string refusal_of_step(double safe_steps) {
   scene.law.impact_speed = 1;
   scene.time_step.fraction_of_contact = safe_steps * kLargestContactFraction;
   try {
-    make_scene_run(scene, 1);
+    make_run(scene, 1);
   } catch (const SceneError& error) {
     return error.what();
   }
@@ -632,13 +631,13 @@ StepSize collisions_at_step(double safe_steps, const Checkpoint& checkpoint) {
   // The contact time goes with the speed to the power -1/5.
   scene.law.impact_speed = kSpeed * std::pow(safe_steps, -5);
   scene.time_step.fraction_of_contact = kLargestContactFraction;
-  const double way = kSpeed * make_scene_run(scene, 1)->time_step();  // of both together
+  const double way = kSpeed * make_run(scene, 1)->time_step();  // of both together
   for (int phase = 0; phase < kPhases; ++phase) {
     Scene<2> one = scene;
     const double gap = way * (phase + 0.5) / kPhases;
     one.grains[0].position.x() = -kRadius - gap / 2;
     one.grains[1].position.x() = kRadius + gap / 2;
-    const auto run = make_scene_run(one, 1);
+    const auto run = make_run(one, 1);
     double deepest = 0;
     ContactAudit<2> audit;
     // Until they part again.
@@ -695,7 +694,7 @@ Pile pile(FrictionModel friction, std::int64_t steps, const Checkpoint& checkpoi
   scene.fills.push_back(column);
   scene.walls.push_back(Wall<2>::half_space("left", {0, 0}, {1, 0}));
   scene.walls.push_back(Wall<2>::half_space("right", {2 * middle, 0}, {-1, 0}));
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
 
   Pile result;
   result.grains = run->count() - kPinned;
@@ -743,7 +742,7 @@ Gas elastic_gas(std::int64_t grain_steps, const Checkpoint& checkpoint) {
   scene.fills.push_back(gas);
   add_tub<2>(scene, {0, 0}, kSide);
   scene.walls.push_back(Wall<2>::half_space("lid", {0, kSide}, {0, -1}));
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
 
   Gas result;
   result.grains = kGrains;
@@ -825,7 +824,7 @@ NotANumber not_a_number(const std::filesystem::path& folder, const Checkpoint& c
   Scene<2> spoilt = scene;
   spoilt.grains[5].velocity.y() = std::numeric_limits<double>::quiet_NaN();
   try {
-    make_scene_run(spoilt, 1);
+    make_run(spoilt, 1);
   } catch (const std::exception& error) {
     result.in_program = error.what();
   }
@@ -835,13 +834,13 @@ NotANumber not_a_number(const std::filesystem::path& folder, const Checkpoint& c
   fast.duration = 1;
   fast.audit = true;
   {
-    const auto run = make_scene_run(fast, 1);
+    const auto run = make_run(fast, 1);
     result.last_is_sound = record_until_it_stops(*run, folder, result.overflow, checkpoint,
                                                  [](const Vec<2>& x) { return x.allFinite(); });
   }
 
   fast.grains[5].velocity.y() = 1e150;
-  const auto run = make_scene_run(fast, 1);
+  const auto run = make_run(fast, 1);
   watch(*run, 1000, result.huge, checkpoint);
   return result;
 }
@@ -861,7 +860,7 @@ PushedThrough pushed_through_walls(const Checkpoint& checkpoint) {
   const double speed = 3 * scene.largest_overlap * kRadius * std::sqrt(kStiffness / mass);
   crushed.walls.push_back(Wall<2>::half_space("lid", {0, 12 * kRadius}, {0, -1}));
   crushed.walls.back().motion = Steady<2>{{0, -speed}};
-  watch(*make_scene_run(crushed, 1), 10000, result.lid, checkpoint);
+  watch(*make_run(crushed, 1), 10000, result.lid, checkpoint);
 
   // The lowest discs would sink in by their radius.
   PairLaw soft{0, 1, scene.law};
@@ -869,7 +868,7 @@ PushedThrough pushed_through_walls(const Checkpoint& checkpoint) {
   scene.materials.push_back({"mud", 0});
   scene.pairs.push_back(soft);
   scene.walls[0].kind = 1;
-  watch(*make_scene_run(scene, 1), 10000, result.soft_floor, checkpoint);
+  watch(*make_run(scene, 1), 10000, result.soft_floor, checkpoint);
   return result;
 }
 
@@ -892,7 +891,7 @@ Shrinking shrinking_box(const std::filesystem::path& folder, const Checkpoint& c
   }
   scene.duration = kSide / (2 * kSpeed);  // nothing is left of the box then
   scene.audit = true;
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
 
   Shrinking result;
   result.grains = run->count();

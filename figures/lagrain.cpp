@@ -5,7 +5,6 @@
 
 #include "figure.hpp"
 #include "report.hpp"
-#include "scene_run.hpp"
 
 #include <lagrain/output.hpp>
 
@@ -91,7 +90,7 @@ struct RunArguments {
 template <int Dim>
 int run_scene(const RunArguments& arguments) {
   const Scene<Dim> scene = read_scene<Dim>(arguments.scene);
-  const auto run = make_scene_run(scene, arguments.threads);
+  const auto run = make_run(scene, arguments.threads);
   if (arguments.explain) {
     std::cout << explain(*run);
     return 0;

@@ -1,5 +1,6 @@
 #include "measure.hpp"
 
+#include <lagrain/numbers.hpp>
 #include <lagrain/scene.hpp>
 
 #include <ctime>

@@ -1,6 +1,5 @@
 #include "packing.hpp"
 
-#include "scene_run.hpp"
 
 #include <lagrain/laguerre3.hpp>
 #include <lagrain/output.hpp>
@@ -52,7 +51,7 @@ class Runner {
 
   Packing run() {
     const auto start = std::chrono::steady_clock::now();
-    const std::unique_ptr<Run<3>> run = make_scene_run(job_.scene, 1);  // the jobs share the cores
+    const std::unique_ptr<Run<3>> run = make_run(job_.scene, 1);  // the jobs share the cores
     Packing packing;
     packing.name = job_.name;
     packing.at_first = inside_of(run->walls());

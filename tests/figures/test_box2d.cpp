@@ -4,7 +4,6 @@
 #include "box2d_world.hpp"
 #include "engine.hpp"
 #include "rigid.hpp"
-#include "scene_run.hpp"
 #include "support/tolerance.hpp"
 
 #include <lagrain/random.hpp>
@@ -41,7 +40,7 @@ Wall<2> ground() {
 }
 
 std::unique_ptr<Box2dWorld> world_of(const Scene<2>& scene, const Box2dSettings& settings = {}) {
-  return std::make_unique<Box2dWorld>(*make_scene_run(scene, 1), settings);
+  return std::make_unique<Box2dWorld>(*make_run(scene, 1), settings);
 }
 
 void run_for(Engine& engine, int steps) {

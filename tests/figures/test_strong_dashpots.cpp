@@ -1,7 +1,6 @@
 // Strong dashpots at the step that is called safe. Where it was too long, forces in a crystal
 // alternated from step to step for ever, and walls reported nonsense.
 
-#include "scene_run.hpp"
 
 #include <support/space.hpp>
 
@@ -79,8 +78,8 @@ struct Rest {
 template <int Dim>
 Rest after_safe_steps(Scene<Dim> scene, int steps) {
   scene.time_step.seconds = 1e-12;
-  scene.time_step.seconds = make_scene_run(scene, 1)->time_scales().safe_step;
-  const auto run = make_scene_run(scene, 1);
+  scene.time_step.seconds = make_run(scene, 1)->time_scales().safe_step;
+  const auto run = make_run(scene, 1);
   for (int k = 0; k < steps; ++k) run->step();
   return {-run->walls()[0].force[Dim - 1] / (run->masses().sum() * kGravity),
           run->spins() ? run->spins()->cwiseAbs().maxCoeff() * kRadius : 0};

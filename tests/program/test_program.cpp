@@ -1,7 +1,6 @@
 #include <lagrain/output.hpp>
 #include <lagrain/scene.hpp>
 
-#include "scene_run.hpp"
 #include "support/cases.hpp"
 #include "support/files.hpp"
 #include "support/scene_text.hpp"
@@ -83,7 +82,7 @@ bool holds(const std::string& text, const std::string& part) {
 
 template <int Dim>
 void check_start(const Scene<Dim>& scene) {
-  const auto run = make_scene_run(scene);
+  const auto run = make_run(scene);
   for (int k = 0; k < cases(20, 2000); ++k) run->step();
   CHECK(run->audit().missed() == 0);
   CHECK(to_toml(parse_scene<Dim>(to_toml(run->scene()), "again.toml")) == to_toml(run->scene()));
@@ -248,6 +247,35 @@ TEST_SUITE("program") {
     CHECK(holds(content(place / "result/summary.txt"), "stopped by the user"));
     for (const auto& entry : fs::recursive_directory_iterator(place / "result")) {
       CHECK(entry.path().extension() != ".part");
+    }
+  }
+
+  TEST_CASE("what a run has written is there and whole when the program is killed") {
+    const Place place;
+    place.write("heap.toml", with(kOnTriangulation, "\"20 ms\"", "\"1 h\"") +
+                                 "[output]\nseries_every = \"1 ms\"\nframes_every = \"5 ms\"\n");
+    const auto lines = [&](const char* file) {
+      const std::string text = content(place / "result" / file);
+      return std::count(text.begin(), text.end(), '\n');
+    };
+
+    const pid_t child = place.start({"run", "heap.toml", "--out", "result"});
+    const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+    while (lines("frames.csv") < 4 && std::chrono::steady_clock::now() < give_up) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+
+    REQUIRE(lines("frames.csv") >= 4);
+    CHECK(lines("series.csv") >= 1 + 10);
+    const std::string series = content(place / "result/series.csv");
+    CHECK(series.back() == '\n');
+    for (int frame = 0; frame < lines("frames.csv") - 1; ++frame) {
+      const std::string name = std::to_string(frame);
+      const std::string text =
+          content(place / ("result/frames/" + std::string(4 - name.size(), '0') + name + ".csv"));
+      CHECK(std::count(text.begin(), text.end(), '\n') == 1 + 14);
     }
   }
 

@@ -1,6 +1,7 @@
 #include <lagrain/scene.hpp>
 
 #include <lagrain/check.hpp>
+#include <lagrain/numbers.hpp>
 
 #include "support/scene_text.hpp"
 #include "support/space.hpp"
@@ -133,15 +134,16 @@ TEST_SUITE("scene") {
           "s.toml: dimension: missing; expected 2 or 3");
     CHECK(after("dimension = 2", "dimension = 4") == "s.toml:2: dimension: expected 2 or 3, got 4");
     CHECK(message_of(with(kHeap, "density = 2000", "")) ==
-          "s.toml:18: fill[0].material: grains of \"gravel\" need [materials.gravel] density");
+          "s.toml:19: fill[0].material: grains of \"gravel\" need [materials.gravel] density");
     CHECK(message_of(kHeap.substr(0, kHeap.find("[[fill]]"))) ==
           "s.toml: no grains: expected at least one [[fill]] or [[grain]]");
   }
 
   TEST_CASE("a key that the model does not use is an error") {
-    CHECK(after("friction = \"elastic\"", "friction = \"none\"") ==
-          "s.toml:13: law.friction: a scene with friction = \"none\" does not use it; remove this "
-          "line or choose \"viscous\" or \"elastic\"");
+    CHECK(
+        after("friction = \"elastic\"", "friction = \"none\"") ==
+        "s.toml:13: law.friction: friction = \"none\" does not use it; remove this line or choose "
+        "\"viscous\" or \"elastic\"");
     const std::string hertz = with(with(kHeap, "\"linear\"", "\"hertz\""), "[law]",
                                    "[law]\nmodulus = \"1 MPa\"\nimpact_speed = 1");
     CHECK(message_of(hertz) ==
@@ -201,7 +203,7 @@ TEST_SUITE("scene") {
           "s.toml:43: wall[1].motion.stop: a piston has none: grains stop it; remove this line");
     const std::string rock = "[[wall]]\nmaterial = \"rock\"\n";
     CHECK(wall(rock + "point = [0, 0]\nnormal = [0, 1]\nname = \"floor\"\n") ==
-          "s.toml:43: wall[2].name: a second \"floor\"");
+          "s.toml:47: wall[2].name: a second \"floor\"");
     CHECK(wall(rock + "point = [0, 0]\nradius = 0\n") ==
           "s.toml:46: wall[2].radius: expected a positive length [m], got 0");
     CHECK(wall(rock + "radius = 1\n") == "s.toml:43: wall[2].point: missing; expected [x, y]");
@@ -271,7 +273,7 @@ TEST_SUITE("scene") {
     CHECK(box("high = [1, 1]\nopen = \"top\"\n") ==
           "s.toml:47: box[0].open: expected a list of sides, got \"top\"");
     CHECK(box("high = [1, 0]\n") ==
-          "s.toml:43: box[0].high: expected low below high in every direction");
+          "s.toml:46: box[0].high: expected low below high in every direction");
     CHECK(box("high = [1, 1]\n") == "s.toml:43: box[0].name: a second \"left\"");
     CHECK(box("high = [1, 1]\nname = \"b\"\nopenn = []\n") ==
           "s.toml:48: box[0].openn: unknown key (did you mean \"open\"?)");

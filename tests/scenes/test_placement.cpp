@@ -1,3 +1,4 @@
+#include <lagrain/numbers.hpp>
 #include <lagrain/placement.hpp>
 
 #include "support/scene_text.hpp"

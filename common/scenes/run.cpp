@@ -2,9 +2,13 @@
 
 #include "simulation_run.hpp"
 
+#include <lagrain/all_pairs.hpp>
+#include <lagrain/cell_grid.hpp>
+#include <lagrain/numbers.hpp>
+#include <lagrain/triangulation2.hpp>
+#include <lagrain/triangulation3.hpp>
+
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <thread>
 
@@ -58,23 +62,38 @@ template <int Dim>
 std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, AnyNeighbourhood<Dim> neighbourhood) {
   Placement<Dim> placement = place_grains(scene);
   switch (scene.friction) {
-    case FrictionModel::viscous:
-      return detail::make_viscous_run(scene, std::move(placement), std::move(neighbourhood));
-    case FrictionModel::elastic:
-      return detail::make_elastic_run(scene, std::move(placement), std::move(neighbourhood));
-    case FrictionModel::none:
-      break;
+#define LAGRAIN_CASE(word, Friction)                                         \
+  case FrictionModel::word:                                                  \
+    return detail::make_run_with<Dim, Friction>(scene, std::move(placement), \
+                                                std::move(neighbourhood));
+    LAGRAIN_FRICTION_LAWS(LAGRAIN_CASE)
+#undef LAGRAIN_CASE
   }
-  return detail::make_frictionless_run(scene, std::move(placement), std::move(neighbourhood));
+  throw ContractError("a scene names no friction law");
 }
 
+namespace {
+
 template <int Dim>
-std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene) {
-  LAGRAIN_EXPECTS(scene.neighbourhood != NeighbourhoodModel::triangulation,
-                  "the triangulation has to be handed over");
-  return make_run(scene, scene.neighbourhood == NeighbourhoodModel::all_pairs
-                             ? AnyNeighbourhood<Dim>(AllPairs<Dim>{})
-                             : AnyNeighbourhood<Dim>(CellGrid<Dim>{}));
+AnyNeighbourhood<Dim> neighbourhood_of(const Scene<Dim>& scene) {
+  switch (scene.neighbourhood) {
+    case NeighbourhoodModel::all_pairs:
+      return AnyNeighbourhood<Dim>(AllPairs<Dim>{});
+    case NeighbourhoodModel::linked_cells:
+      return AnyNeighbourhood<Dim>(CellGrid<Dim>{});
+    case NeighbourhoodModel::triangulation:
+      break;
+  }
+  return AnyNeighbourhood<Dim>(TriangulationNeighbourhood<Dim>{});
+}
+
+}  // namespace
+
+template <int Dim>
+std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, int threads) {
+  auto run = make_run(scene, neighbourhood_of(scene));
+  run->use_threads(threads > 0 ? threads : threads_that_pay(run->count()));
+  return run;
 }
 
 int threads_that_pay(int grains) {
@@ -85,22 +104,6 @@ int threads_that_pay(int grains) {
 
 namespace {
 
-std::string normal_text(NormalModel normal) {
-  return normal == NormalModel::hertz ? "Hertz with viscous damping" : "linear spring and dashpot";
-}
-
-std::string friction_text(FrictionModel friction) {
-  switch (friction) {
-    case FrictionModel::none:
-      return "no friction";
-    case FrictionModel::viscous:
-      return "viscous friction cut at Coulomb's limit";
-    case FrictionModel::elastic:
-      return "Coulomb friction with elastic memory";
-  }
-  return {};
-}
-
 std::string padded(std::string text, std::size_t width) {
   if (text.size() < width) text.append(width - text.size(), ' ');
   return text;
@@ -110,25 +113,16 @@ std::string right(const std::string& text, std::size_t width) {
 }
 
 template <int Dim, class Law>
-std::string size_row(FrictionModel friction, bool chosen) {
+std::string size_row(const char* friction, bool chosen) {
   const std::size_t grain = bytes_per_grain<Dim, Law::needs>();
   const std::size_t spin = grain - bytes_per_grain<Dim, Needs{}>();
   const std::size_t memory = Law::needs.memory ? sizeof(typename Law::template Memory<Dim>) : 0;
-  return (chosen ? "  > " : "    ") + padded(std::string(name_of(friction)), 10) +
-         right(std::to_string(grain), 8) + right(std::to_string(spin), 10) +
-         right(std::to_string(sizeof(Pair) + memory), 12) + right(std::to_string(memory), 12) +
-         "\n";
+  return (chosen ? "  > " : "    ") + padded(friction, 10) + right(std::to_string(grain), 8) +
+         right(std::to_string(spin), 10) + right(std::to_string(sizeof(Pair) + memory), 12) +
+         right(std::to_string(memory), 12) + "\n";
 }
 
 }  // namespace
-
-std::string rounded(double value, int digits) {
-  if (!std::isfinite(value)) return shortest(value);
-  std::array<char, 64> buffer;
-  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
-                                    std::chars_format::general, digits);
-  return {buffer.data(), result.ptr};
-}
 
 template <int Dim>
 std::string explain(const Run<Dim>& run) {
@@ -141,7 +135,8 @@ std::string explain(const Run<Dim>& run) {
   const double fraction = run.time_step() / scales.contact;
   line("title", scene.title);
   line("dimension", std::to_string(Dim));
-  line("contact law", normal_text(scene.normal) + ", " + friction_text(scene.friction));
+  line("contact law", std::string(description_of(scene.normal).in_words) + ", " +
+                          std::string(description_of(scene.friction).in_words));
   line("integrator", std::string(name_of(scene.integrator)));
   line("neighbourhood", std::string(name_of(scene.neighbourhood)));
   line("grains", std::to_string(run.count()));
@@ -159,11 +154,10 @@ std::string explain(const Run<Dim>& run) {
   line("bytes per pair", bytes(size.per_near_pair, size.memory_per_pair, "memory"));
   out += "\nwhat friction costs [bytes]\n";
   out += "    friction     grain   of spin  near pair   of memory\n";
-  out += size_row<Dim, LinearSpring>(FrictionModel::none, scene.friction == FrictionModel::none);
-  out += size_row<Dim, ViscousFriction<LinearSpring>>(FrictionModel::viscous,
-                                                      scene.friction == FrictionModel::viscous);
-  out += size_row<Dim, CundallStrack<LinearSpring>>(FrictionModel::elastic,
-                                                    scene.friction == FrictionModel::elastic);
+#define LAGRAIN_SIZE_ROW(word, Friction) \
+  out += size_row<Dim, Friction<LinearSpring>>(#word, scene.friction == FrictionModel::word);
+  LAGRAIN_FRICTION_LAWS(LAGRAIN_SIZE_ROW)
+#undef LAGRAIN_SIZE_ROW
   return out;
 }
 
@@ -224,8 +218,8 @@ template class Run<2>;
 template class Run<3>;
 template std::unique_ptr<Run<2>> make_run<2>(const Scene<2>&, AnyNeighbourhood<2>);
 template std::unique_ptr<Run<3>> make_run<3>(const Scene<3>&, AnyNeighbourhood<3>);
-template std::unique_ptr<Run<2>> make_run<2>(const Scene<2>&);
-template std::unique_ptr<Run<3>> make_run<3>(const Scene<3>&);
+template std::unique_ptr<Run<2>> make_run<2>(const Scene<2>&, int);
+template std::unique_ptr<Run<3>> make_run<3>(const Scene<3>&, int);
 template std::string explain<2>(const Run<2>&);
 template std::string explain<3>(const Run<3>&);
 template std::vector<std::pair<std::string, std::string>> facts<2>(const Run<2>&);

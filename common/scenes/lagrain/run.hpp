@@ -113,15 +113,15 @@ class Run {
 
 /// Builds the simulation that a scene names: places the grains, chooses the types once, evaluates
 /// the forces at time 0.
+/// @param threads  that share its steps; 0: as many as pay
 /// @throws SceneError if the grains do not fit or overlap, or the time step is not safe;
 /// ContractError if a scene that no file was read for has a number that is NaN or out of range
 template <int Dim>
-std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, AnyNeighbourhood<Dim> neighbourhood);
+std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, int threads = 0);
 
-/// The same with a neighbourhood that needs no triangulation.
-/// @throws ContractError if the scene names the triangulation
+/// The same on one thread with a neighbourhood of one's own in place of the one that it names.
 template <int Dim>
-std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene);
+std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, AnyNeighbourhood<Dim> neighbourhood);
 
 /// Threads worth starting for so many grains: one until a step is long against waking them up, then
 /// all cores.
@@ -135,8 +135,5 @@ std::string explain(const Run<Dim>& run);
 /// residuals, audit, cost of the neighbourhood.
 template <int Dim>
 std::vector<std::pair<std::string, std::string>> facts(const Run<Dim>& run);
-
-/// Three significant digits for people: "1.23e-05", "0.0123", "12.3".
-std::string rounded(double value, int digits = 3);
 
 }  // namespace lagrain

@@ -4,6 +4,7 @@
 /// (run.hpp) turns the names into them.
 
 #include <lagrain/check.hpp>
+#include <lagrain/contact_laws.hpp>
 #include <lagrain/vec.hpp>
 #include <lagrain/walls.hpp>
 
@@ -18,8 +19,6 @@
 
 namespace lagrain {
 
-enum class NormalModel { linear, hertz };
-enum class FrictionModel { none, viscous, elastic };
 enum class IntegratorModel { velocity_verlet, symplectic_euler, fourth_order };
 enum class NeighbourhoodModel { triangulation, linked_cells, all_pairs };
 
@@ -28,17 +27,6 @@ std::string_view name_of(NormalModel model);
 std::string_view name_of(FrictionModel model);
 std::string_view name_of(IntegratorModel model);
 std::string_view name_of(NeighbourhoodModel model);
-
-/// Numbers of a contact law; a model uses some of them.
-struct LawNumbers {
-  double stiffness = 0;              ///< linear: k [N/m]
-  double modulus = 0;                ///< hertz: E* [Pa]
-  double impact_speed = 0;           ///< hertz: the fastest collision expected [m/s]
-  double restitution = 1;            ///< [-]
-  double friction = 0;               ///< viscous, elastic: mu [-]
-  double stiffness_ratio = 2.0 / 7;  ///< elastic: tangential over normal stiffness [-]
-  double tangential_damping = 0;     ///< viscous, elastic: damping ratio [-]
-};
 
 /// Numbers that hold between two materials instead of the scene's own.
 struct PairLaw {
@@ -165,8 +153,5 @@ Scene<Dim> parse_scene(std::string_view text, const std::string& name);
 /// bit.
 template <int Dim>
 std::string to_toml(const Scene<Dim>& scene);
-
-/// The shortest decimal that reads back as the same double.
-std::string shortest(double value);
 
 }  // namespace lagrain

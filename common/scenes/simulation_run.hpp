@@ -1,48 +1,17 @@
 #pragma once
 /// @file
-/// The one implementation of Run, templated on the model. Included by the run_*.cpp files alone,
-/// each of which compiles the models of one friction law.
+/// Private to the sources of runs: the one implementation of Run, templated on the model.
 
-#include <lagrain/cundall_strack.hpp>
-#include <lagrain/hertz.hpp>
-#include <lagrain/hooke.hpp>
+#include <lagrain/contact_laws.hpp>
 #include <lagrain/integrator.hpp>
+#include <lagrain/numbers.hpp>
 #include <lagrain/run.hpp>
 #include <lagrain/simulation.hpp>
-#include <lagrain/viscous_friction.hpp>
 
 #include <algorithm>
 #include <utility>
 
 namespace lagrain::detail {
-
-template <class Law>
-struct MakeLaw;
-
-template <>
-struct MakeLaw<LinearSpring> {
-  static LinearSpring from(const LawNumbers& n) {
-    return LinearSpring::with_restitution(n.stiffness, n.restitution);
-  }
-};
-template <>
-struct MakeLaw<Hertz> {
-  static Hertz from(const LawNumbers& n) {
-    return Hertz::with_restitution(n.modulus, n.restitution, n.impact_speed);
-  }
-};
-template <class Normal>
-struct MakeLaw<ViscousFriction<Normal>> {
-  static ViscousFriction<Normal> from(const LawNumbers& n) {
-    return {MakeLaw<Normal>::from(n), n.friction, n.tangential_damping};
-  }
-};
-template <class Normal>
-struct MakeLaw<CundallStrack<Normal>> {
-  static CundallStrack<Normal> from(const LawNumbers& n) {
-    return {MakeLaw<Normal>::from(n), n.friction, n.stiffness_ratio, n.tangential_damping};
-  }
-};
 
 template <int Dim, class Law, class Motion>
 class SimulationRun final : public Run<Dim> {
@@ -124,13 +93,15 @@ class SimulationRun final : public Run<Dim> {
   Sim sim_;
 };
 
-/// The second half of make_run: law and grains as types.
-template <int Dim, class Law>
-std::unique_ptr<Run<Dim>> make_run_with(const Scene<Dim>& scene, Placement<Dim> placement,
-                                        AnyNeighbourhood<Dim> neighbourhood) {
-  LawTable<Law> laws(MakeLaw<Law>::from(scene.law),
+/// The last part of make_run: law and grains as types.
+template <int Dim, class Normal, template <class> class Friction>
+std::unique_ptr<Run<Dim>> make_run_of(const Scene<Dim>& scene, Placement<Dim> placement,
+                                      AnyNeighbourhood<Dim> neighbourhood) {
+  using Law = Friction<Normal>;
+  const auto law = [](const LawNumbers& numbers) { return make_law<Normal, Friction>(numbers); };
+  LawTable<Law> laws(law(scene.law),
                      scene.pairs.empty() ? 1 : static_cast<int>(scene.materials.size()));
-  for (const PairLaw& pair : scene.pairs) laws.set(pair.a, pair.b, MakeLaw<Law>::from(pair.law));
+  for (const PairLaw& pair : scene.pairs) laws.set(pair.a, pair.b, law(pair.law));
   std::vector<Wall<Dim>> walls = scene.walls;
   if (scene.pairs.empty()) {
     for (Wall<Dim>& wall : walls) wall.kind = 0;
@@ -169,15 +140,28 @@ std::unique_ptr<Run<Dim>> make_run_with(const Scene<Dim>& scene, Placement<Dim> 
                     "\"fourth order\" is for forces without loss: it needs friction = \"none\"");
 }
 
-/// The models of one friction law, in one file each.
-template <int Dim>
-std::unique_ptr<Run<Dim>> make_frictionless_run(const Scene<Dim>&, Placement<Dim>,
-                                                AnyNeighbourhood<Dim>);
-template <int Dim>
-std::unique_ptr<Run<Dim>> make_viscous_run(const Scene<Dim>&, Placement<Dim>,
-                                           AnyNeighbourhood<Dim>);
-template <int Dim>
-std::unique_ptr<Run<Dim>> make_elastic_run(const Scene<Dim>&, Placement<Dim>,
-                                           AnyNeighbourhood<Dim>);
+/// The part of make_run before: the normal law becomes a type. Each friction law has a source file
+/// of its own, so that they are compiled side by side.
+template <int Dim, template <class> class Friction>
+std::unique_ptr<Run<Dim>> make_run_with(const Scene<Dim>& scene, Placement<Dim> placement,
+                                        AnyNeighbourhood<Dim> neighbourhood) {
+  switch (scene.normal) {
+#define LAGRAIN_CASE(word, Normal)                                         \
+  case NormalModel::word:                                                  \
+    return make_run_of<Dim, Normal, Friction>(scene, std::move(placement), \
+                                              std::move(neighbourhood));
+    LAGRAIN_NORMAL_LAWS(LAGRAIN_CASE)
+#undef LAGRAIN_CASE
+  }
+  throw ContractError("a scene names no normal law");
+}
+
+#define LAGRAIN_MADE_ELSEWHERE(word, Friction)                        \
+  extern template std::unique_ptr<Run<2>> make_run_with<2, Friction>( \
+      const Scene<2>&, Placement<2>, AnyNeighbourhood<2>);            \
+  extern template std::unique_ptr<Run<3>> make_run_with<3, Friction>( \
+      const Scene<3>&, Placement<3>, AnyNeighbourhood<3>);
+LAGRAIN_FRICTION_LAWS(LAGRAIN_MADE_ELSEWHERE)
+#undef LAGRAIN_MADE_ELSEWHERE
 
 }  // namespace lagrain::detail

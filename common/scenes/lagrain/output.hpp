@@ -9,37 +9,24 @@
 ///     summary.txt      what the run was and how far it can be trusted
 ///     last.csv         only after an error: the last good state
 ///
-/// The first line of a CSV file is name[unit]. Numbers read back bit for bit. Every file is written
+/// The first line of a CSV file is name[unit]. Numbers read back bit for bit. series.csv and
+/// frames.csv grow row by row, and what has been written stays, however the program ends; every
+/// other file is written
 /// whole or not at all.
 
+#include <lagrain/files.hpp>
+#include <lagrain/format.hpp>
+#include <lagrain/numbers.hpp>
 #include <lagrain/run.hpp>
 
 #include <filesystem>
 #include <functional>
 #include <string>
-#include <string_view>
 
 namespace lagrain {
 
 /// "0.1.0"
 const char* version();
-
-/// Writes a file whole or not at all, through a neighbour that is renamed.
-/// @throws SceneError if that is not possible
-void write_file(const std::filesystem::path& file, std::string_view text);
-
-/// Makes a folder, with its parents, and sees that files can be written into it.
-/// @throws SceneError if not
-void make_folder(const std::filesystem::path& folder);
-
-/// The grains as CSV: id, place, velocity, spin if any, radius, material.
-template <int Dim>
-std::string frame_csv(const Run<Dim>& run);
-
-/// The contacts as CSV: the two partners, overlap, normal, force on the first. A wall is given by
-/// its name.
-template <int Dim>
-std::string contacts_csv(const Run<Dim>& run);
 
 /// Where a run is, for a progress line.
 struct Progress {

@@ -2,6 +2,7 @@
 
 #include "pushing.hpp"
 
+#include <lagrain/numbers.hpp>
 #include <lagrain/random.hpp>
 
 #include <algorithm>

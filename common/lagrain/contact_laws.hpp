@@ -1,0 +1,175 @@
+#pragma once
+/// @file
+/// The contact laws that lagrain knows, each in one row. Scene files, their messages, the choice of
+/// types at run time, and what is compiled in advance are all made from the rows of this file.
+///
+/// To add a normal law, write its header and its test, add a line to LAGRAIN_NORMAL_LAWS, and give
+/// it an entry with its keys below. Without the entry nothing compiles. A program of one's own that
+/// brings its law along needs none of this: `Simulation` takes any type that is a ContactLaw.
+
+#include <lagrain/cundall_strack.hpp>
+#include <lagrain/hertz.hpp>
+#include <lagrain/hooke.hpp>
+#include <lagrain/needs.hpp>
+#include <lagrain/viscous_friction.hpp>
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace lagrain {
+
+/// No friction: the law is the normal law alone.
+template <class Normal>
+using Frictionless = Normal;
+
+/// Rows of the lists: ROW(word of the scene file, type). What follows ROW is passed on to it.
+#define LAGRAIN_NORMAL_LAWS(ROW, ...)                  \
+  ROW(linear, LinearSpring __VA_OPT__(, ) __VA_ARGS__) \
+  ROW(hertz, Hertz __VA_OPT__(, ) __VA_ARGS__)
+/// Friction laws are templates over a normal law.
+#define LAGRAIN_FRICTION_LAWS(ROW, ...)                    \
+  ROW(none, Frictionless __VA_OPT__(, ) __VA_ARGS__)       \
+  ROW(viscous, ViscousFriction __VA_OPT__(, ) __VA_ARGS__) \
+  ROW(elastic, CundallStrack __VA_OPT__(, ) __VA_ARGS__)
+
+#define LAGRAIN_WORD(word, Law) word,
+enum class NormalModel { LAGRAIN_NORMAL_LAWS(LAGRAIN_WORD) };
+enum class FrictionModel { LAGRAIN_FRICTION_LAWS(LAGRAIN_WORD) };
+#undef LAGRAIN_WORD
+
+/// The numbers from which laws are made; each law uses those that its keys name.
+struct LawNumbers {
+  double stiffness = 0;     ///< k [N/m]
+  double modulus = 0;       ///< E* [Pa]
+  double impact_speed = 0;  ///< the fastest collision expected [m/s]
+  double restitution = 1;   ///< [-]
+  double friction = 0;      ///< mu [-]
+  double stiffness_ratio =
+      CundallStrack<LinearSpring>{}.stiffness_ratio;  ///< tangential over normal stiffness [-]
+  double tangential_damping = 0;                      ///< damping ratio [-]
+};
+
+/// Which numbers a key accepts.
+enum class Range { any, not_negative, positive, fraction /* above 0 and at most 1 */ };
+
+/// A key of the scene's table [law].
+struct LawKey {
+  std::string_view name;
+  std::string_view what;  ///< with its article: "a stiffness"
+  std::string_view unit;  ///< SI; empty for a pure number
+  Range range;
+  double LawNumbers::*number;
+  std::optional<double> fallback{};  ///< taken if the key is missing; none: the key is required
+};
+
+namespace law_keys {
+inline constexpr LawKey kStiffness{"stiffness", "a stiffness", "N/m", Range::positive,
+                                   &LawNumbers::stiffness};
+inline constexpr LawKey kModulus{"modulus", "a modulus", "Pa", Range::positive,
+                                 &LawNumbers::modulus};
+inline constexpr LawKey kImpactSpeed{"impact_speed", "a speed", "m/s", Range::positive,
+                                     &LawNumbers::impact_speed};
+inline constexpr LawKey kRestitution{"restitution", "a number", "", Range::fraction,
+                                     &LawNumbers::restitution};
+inline constexpr LawKey kFriction{"friction", "a number", "", Range::not_negative,
+                                  &LawNumbers::friction};
+}  // namespace law_keys
+
+/// The entry of a normal law: what it is called, its keys, and how it is made from their numbers.
+template <class Normal>
+struct NormalLawEntry;
+
+template <>
+struct NormalLawEntry<LinearSpring> {
+  static constexpr std::string_view kInWords = "linear spring and dashpot";
+  static constexpr std::array kKeys{law_keys::kStiffness, law_keys::kRestitution};
+  static LinearSpring make(const LawNumbers& n) {
+    return LinearSpring::with_restitution(n.stiffness, n.restitution);
+  }
+};
+
+template <>
+struct NormalLawEntry<Hertz> {
+  static constexpr std::string_view kInWords = "Hertz with viscous damping";
+  static constexpr std::array kKeys{law_keys::kModulus, law_keys::kImpactSpeed,
+                                    law_keys::kRestitution};
+  static Hertz make(const LawNumbers& n) {
+    return Hertz::with_restitution(n.modulus, n.restitution, n.impact_speed);
+  }
+};
+
+/// The entry of a friction law: as above, made over a normal law.
+template <template <class> class Friction>
+struct FrictionLawEntry;
+
+template <>
+struct FrictionLawEntry<Frictionless> {
+  static constexpr std::string_view kInWords = "no friction";
+  static constexpr std::array<LawKey, 0> kKeys{};
+  template <class Normal>
+  static Normal over(const Normal& normal, const LawNumbers&) {
+    return normal;
+  }
+};
+
+template <>
+struct FrictionLawEntry<ViscousFriction> {
+  static constexpr std::string_view kInWords = "viscous friction cut at Coulomb's limit";
+  /// Without damping this friction would not act at all.
+  static constexpr std::array kKeys{
+      law_keys::kFriction,
+      LawKey{"tangential_damping", "a number", "", Range::positive, &LawNumbers::tangential_damping,
+             ViscousFriction<LinearSpring>{}.tangential_damping_ratio}};
+  template <class Normal>
+  static ViscousFriction<Normal> over(const Normal& normal, const LawNumbers& n) {
+    return {normal, n.friction, n.tangential_damping};
+  }
+};
+
+template <>
+struct FrictionLawEntry<CundallStrack> {
+  static constexpr std::string_view kInWords = "Coulomb friction with elastic memory";
+  static constexpr std::array kKeys{
+      law_keys::kFriction,
+      LawKey{"tangential_damping", "a number", "", Range::not_negative,
+             &LawNumbers::tangential_damping,
+             CundallStrack<LinearSpring>{}.tangential_damping_ratio},
+      LawKey{"stiffness_ratio", "a number", "", Range::positive, &LawNumbers::stiffness_ratio,
+             CundallStrack<LinearSpring>{}.stiffness_ratio}};
+  template <class Normal>
+  static CundallStrack<Normal> over(const Normal& normal, const LawNumbers& n) {
+    return {normal, n.friction, n.stiffness_ratio, n.tangential_damping};
+  }
+};
+
+/// An entry as data.
+struct LawDescription {
+  std::string_view word;      ///< of the scene file
+  std::string_view in_words;  ///< for people
+  std::span<const LawKey> keys;
+};
+
+#define LAGRAIN_DESCRIBE(word, Law, Entry) \
+  LawDescription{#word, Entry<Law>::kInWords, Entry<Law>::kKeys},
+inline constexpr std::array kNormalLaws{LAGRAIN_NORMAL_LAWS(LAGRAIN_DESCRIBE, NormalLawEntry)};
+inline constexpr std::array kFrictionLaws{
+    LAGRAIN_FRICTION_LAWS(LAGRAIN_DESCRIBE, FrictionLawEntry)};
+#undef LAGRAIN_DESCRIBE
+
+inline constexpr const LawDescription& description_of(NormalModel model) {
+  return kNormalLaws[static_cast<std::size_t>(model)];
+}
+inline constexpr const LawDescription& description_of(FrictionModel model) {
+  return kFrictionLaws[static_cast<std::size_t>(model)];
+}
+
+/// The law that numbers describe.
+template <class Normal, template <class> class Friction>
+Friction<Normal> make_law(const LawNumbers& numbers) {
+  return FrictionLawEntry<Friction>::over(NormalLawEntry<Normal>::make(numbers), numbers);
+}
+
+}  // namespace lagrain

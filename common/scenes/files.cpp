@@ -1,0 +1,70 @@
+#include <lagrain/files.hpp>
+
+#include <lagrain/check.hpp>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <system_error>
+#include <utility>
+
+namespace lagrain {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void cannot_write(const fs::path& file, const std::string& reason) {
+  throw SceneError(file.string() + ": cannot be written: " + reason);
+}
+
+/// What the last failed call on a stream says.
+std::string last_reason() {
+  return errno != 0 ? std::strerror(errno) : "unknown error";
+}
+
+}  // namespace
+
+void write_file(const fs::path& file, std::string_view text) {
+  const fs::path part = file.string() + ".part";
+  errno = 0;
+  std::ofstream out(part, std::ios::binary);
+  out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  out.close();
+  std::error_code failure;
+  if (!out) {
+    const std::string reason = last_reason();
+    fs::remove(part, failure);
+    cannot_write(file, reason);
+  }
+  fs::rename(part, file, failure);
+  if (failure) {
+    std::error_code ignored;
+    fs::remove(part, ignored);
+    cannot_write(file, failure.message());
+  }
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  if (failure) cannot_write(folder, failure.message());
+  if (!fs::is_directory(folder, failure)) cannot_write(folder, "it is no folder");
+  const fs::path probe = folder / ".lagrain";
+  write_file(probe, "");
+  fs::remove(probe, failure);
+}
+
+GrowingFile::GrowingFile(fs::path file) : file_(std::move(file)) {
+  errno = 0;
+  out_.open(file_, std::ios::binary | std::ios::trunc);
+  if (!out_) cannot_write(file_, last_reason());
+}
+
+void GrowingFile::add(std::string_view text) {
+  errno = 0;
+  out_.write(text.data(), static_cast<std::streamsize>(text.size()));
+  out_.flush();
+  if (!out_) cannot_write(file_, last_reason());
+}
+
+}  // namespace lagrain

@@ -1,0 +1,57 @@
+#include <lagrain/frame.hpp>
+
+namespace lagrain {
+
+template <int Dim>
+std::vector<SeriesColumn> series_columns(const Run<Dim>& run) {
+  std::vector<SeriesColumn> columns{{"time", "s"},
+                                    {"kinetic", "J"},
+                                    {"gravity", "J"},
+                                    {"elastic", "J"},
+                                    {"wall_work", "J"},
+                                    {"dashpot", "J"},
+                                    {"friction", "J"},
+                                    {"residual", "J"},
+                                    {"contacts", "-"},
+                                    {"wall_contacts", "-"},
+                                    {"coordination", "-"},
+                                    {"mean_overlap", "-"},
+                                    {"largest_overlap", "-"},
+                                    {"near_pairs", "-"},
+                                    {"refreshes", "-"}};
+  const auto add = [&](const std::string& stem, const char* unit) {
+    for (int d = 0; d < Dim; ++d) columns.push_back({stem + "xyz"[d], unit});
+  };
+  for (const Wall<Dim>& wall : run.walls()) {
+    add(wall.name + ".f", "N");
+    if (wall.moves()) add(wall.name + ".", "m");
+  }
+  return columns;
+}
+
+template <int Dim>
+Sample sample_of(const Run<Dim>& run) {
+  const Ledger now = run.ledger();
+  const ContactStatistics s = run.statistics();
+  Sample row{run.time(),        now.kinetic,
+             now.gravity,       now.elastic,
+             now.wall_work,     now.dashpot,
+             now.friction,      residual(now, run.start()),
+             s.contacts,        s.wall_contacts,
+             s.coordination,    s.mean_overlap,
+             s.largest_overlap, static_cast<std::int64_t>(run.near_pairs().size()),
+             run.refreshes()};
+  const auto add = [&](const Vec<Dim>& v) { row.insert(row.end(), v.begin(), v.end()); };
+  for (const Wall<Dim>& wall : run.walls()) {
+    add(wall.force);
+    if (wall.moves()) add(wall.point);
+  }
+  return row;
+}
+
+template std::vector<SeriesColumn> series_columns<2>(const Run<2>&);
+template std::vector<SeriesColumn> series_columns<3>(const Run<3>&);
+template Sample sample_of<2>(const Run<2>&);
+template Sample sample_of<3>(const Run<3>&);
+
+}  // namespace lagrain

@@ -1,0 +1,49 @@
+#pragma once
+/// @file
+/// What a run shows of itself: frames, which are states of all grains, and samples, which are rows
+/// of the series. How they are spelled in a file is the business of a format (format.hpp).
+
+#include <lagrain/run.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace lagrain {
+
+/// The grains at one instant.
+template <int Dim>
+struct Frame {
+  std::int64_t step = 0;
+  double time = 0;                             ///< [s]
+  Columns<Dim> position;                       ///< Dim x N [m]
+  Columns<Dim> velocity;                       ///< Dim x N [m/s]
+  std::optional<Columns<kSpinDim<Dim>>> spin;  ///< N columns [rad/s]; none where nothing spins
+
+  static Frame of(const Run<Dim>& run) {
+    Frame frame{run.steps(), run.time(), run.positions(), run.velocities(), {}};
+    if (run.spins() != nullptr) frame.spin = *run.spins();
+    return frame;
+  }
+};
+
+/// A column of the series.
+struct SeriesColumn {
+  std::string name;
+  std::string unit;  ///< "-" for a pure number
+};
+
+/// A row of the series: one value for each column.
+using Sample = std::vector<std::variant<std::int64_t, double>>;
+
+/// The columns of a run's series: time, energies, contacts, then force and place of the walls.
+template <int Dim>
+std::vector<SeriesColumn> series_columns(const Run<Dim>& run);
+
+/// The row of a run's series at this instant.
+template <int Dim>
+Sample sample_of(const Run<Dim>& run);
+
+}  // namespace lagrain

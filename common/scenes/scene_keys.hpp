@@ -1,0 +1,151 @@
+#pragma once
+/// @file
+/// Private to the scene reader and writer: every key of a scene file and every word that one may
+/// hold, spelled once. The page of the scenes (README.md beside this file) explains them; a test
+/// holds page and list together.
+
+#include <lagrain/contact_laws.hpp>
+#include <lagrain/scene.hpp>
+#include <lagrain/units.hpp>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace lagrain::detail {
+
+/// What a number measures.
+struct Measure {
+  std::string_view what;  ///< with its article
+  Unit unit;
+};
+
+inline constexpr Measure kNumber{"a number", {}};
+inline constexpr Measure kLength{"a length", {1, 0, 0}};
+inline constexpr Measure kTime{"a time", {0, 0, 1}};
+inline constexpr Measure kMass{"a mass", {0, 1, 0}};
+inline constexpr Measure kFrequency{"a frequency", {0, 0, -1}};
+inline constexpr Measure kAngularVelocity{"an angular velocity", {0, 0, -1}};
+inline constexpr Measure kSpeed{"a speed", {1, 0, -1}};
+inline constexpr Measure kAcceleration{"an acceleration", {1, 0, -2}};
+inline constexpr Measure kForce{"a force", {1, 1, -2}};
+inline constexpr Measure kDensity{"a density", {-3, 1, 0}};
+
+/// A key of a table, and which numbers it accepts if it holds numbers.
+struct Key {
+  std::string_view name;
+  Measure measure = kNumber;
+  Range range = Range::any;
+};
+
+namespace keys {
+
+inline constexpr Key kTitle{"title"};
+inline constexpr Key kDimension{"dimension"};
+inline constexpr Key kSeed{"seed"};
+inline constexpr Key kDuration{"duration", kTime, Range::positive};
+inline constexpr Key kTimeStep{"time_step", kTime, Range::positive};
+inline constexpr Key kGravity{"gravity", kAcceleration};
+inline constexpr Key kDepth{"depth", kLength, Range::positive};
+inline constexpr Key kNormalLaw{"normal"};
+inline constexpr Key kFrictionLaw{"friction"};
+inline constexpr Key kIntegrator{"integrator"};
+inline constexpr Key kNeighbourhood{"neighbourhood"};
+inline constexpr Key kLargestOverlap{"largest_overlap", kNumber, Range::positive};
+inline constexpr Key kLargestInitialOverlap{"largest_initial_overlap", kNumber,
+                                            Range::not_negative};
+inline constexpr Key kAudit{"audit"};
+inline constexpr Key kAuditEvery{"audit_every"};
+
+inline constexpr Key kLaw{"law"};
+inline constexpr Key kPair{"pair"};
+inline constexpr Key kMaterials{"materials"};
+inline constexpr Key kFill{"fill"};
+inline constexpr Key kGrain{"grain"};
+inline constexpr Key kWall{"wall"};
+inline constexpr Key kBox{"box"};
+inline constexpr Key kOutput{"output"};
+
+inline constexpr Key kBetween{"between"};
+
+inline constexpr Key kMaterialDensity{"density", kDensity, Range::positive};
+
+inline constexpr Key kName{"name"};
+inline constexpr Key kMaterial{"material"};
+inline constexpr Key kCount{"count"};
+inline constexpr Key kRadius{"radius", kLength, Range::positive};
+inline constexpr Key kUniform{"uniform", kLength, Range::positive};
+inline constexpr Key kValues{"values", kLength, Range::positive};
+inline constexpr Key kWeights{"weights", kNumber, Range::not_negative};
+inline constexpr Key kRegion{"region"};
+inline constexpr Key kLow{"low", kLength};
+inline constexpr Key kHigh{"high", kLength};
+inline constexpr Key kArrangement{"arrangement"};
+inline constexpr Key kVelocity{"velocity", kSpeed};
+inline constexpr Key kRandomSpeed{"random", kSpeed, Range::not_negative};
+
+inline constexpr Key kPosition{"position", kLength};
+inline constexpr Key kPinned{"pinned"};
+inline constexpr Key kSpin{"spin", kAngularVelocity};
+
+inline constexpr Key kPoint{"point", kLength};
+inline constexpr Key kNormal{"normal", kNumber};
+inline constexpr Key kAxis{"axis", kNumber};
+inline constexpr Key kFrom{"from", kLength};
+inline constexpr Key kTo{"to", kLength};
+inline constexpr Key kAlong{"along", kLength};
+inline constexpr Key kOpen{"open"};
+
+inline constexpr Key kMotion{"motion"};
+inline constexpr Key kType{"type"};
+inline constexpr Key kStart{"start", kTime, Range::not_negative};
+inline constexpr Key kStop{"stop", kTime, Range::positive};
+inline constexpr Key kAmplitude{"amplitude", kLength};
+inline constexpr Key kFrequency{"frequency", detail::kFrequency, Range::positive};
+inline constexpr Key kPistonMass{"mass", kMass, Range::positive};
+inline constexpr Key kLoad{"load", kForce};
+
+inline constexpr Key kFramesEvery{"frames_every", kTime, Range::positive};
+inline constexpr Key kSeriesEvery{"series_every", kTime, Range::positive};
+inline constexpr Key kContacts{"contacts"};
+
+}  // namespace keys
+
+/// A key of a law as one of the others.
+inline Key key_of(const LawKey& key) {
+  return {key.name,
+          {key.what, key.unit.empty() ? Unit{} : parse_quantity("1 " + std::string(key.unit)).unit},
+          key.range};
+}
+
+/// A word of the scene file and what it stands for.
+template <class E>
+struct Word {
+  std::string_view text;
+  E value;
+};
+
+inline constexpr std::array kIntegratorWords{
+    Word<IntegratorModel>{"velocity Verlet", IntegratorModel::velocity_verlet},
+    Word<IntegratorModel>{"symplectic Euler", IntegratorModel::symplectic_euler},
+    Word<IntegratorModel>{"fourth order", IntegratorModel::fourth_order}};
+inline constexpr std::array kNeighbourhoodWords{
+    Word<NeighbourhoodModel>{"triangulation", NeighbourhoodModel::triangulation},
+    Word<NeighbourhoodModel>{"linked cells", NeighbourhoodModel::linked_cells},
+    Word<NeighbourhoodModel>{"all pairs", NeighbourhoodModel::all_pairs}};
+inline constexpr std::array kArrangementWords{Word<Arrangement>{"lattice", Arrangement::lattice},
+                                              Word<Arrangement>{"random", Arrangement::random}};
+
+/// How a wall can move; a wall without a motion is fixed.
+enum class MotionType { steady, shake, piston };
+inline constexpr std::array kMotionWords{Word<MotionType>{"steady", MotionType::steady},
+                                         Word<MotionType>{"shake", MotionType::shake},
+                                         Word<MotionType>{"piston", MotionType::piston}};
+
+template <class E, std::size_t N>
+constexpr std::string_view text_of(const std::array<Word<E>, N>& words, E value) {
+  return std::find_if(words.begin(), words.end(), [&](const auto& w) { return w.value == value; })
+      ->text;
+}
+
+}  // namespace lagrain::detail

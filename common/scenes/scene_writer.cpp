@@ -1,0 +1,301 @@
+#include <lagrain/numbers.hpp>
+#include <lagrain/scene.hpp>
+
+#include "scene_keys.hpp"
+
+#include <cmath>
+#include <string>
+#include <type_traits>
+
+namespace lagrain {
+namespace {
+
+using detail::Key;
+using detail::text_of;
+namespace keys = detail::keys;
+
+/// A number that TOML reads as the same one: a long row of digits would be too large an integer,
+/// and an integer has no negative zero.
+std::string in_toml(double value) {
+  std::string text = shortest(value);
+  const bool fails_as_integer = std::abs(value) >= 1e15 || (value == 0 && std::signbit(value));
+  if (fails_as_integer && text.find_first_of(".en") == std::string::npos) text += ".0";
+  return text;
+}
+std::string in_toml(int value) {
+  return std::to_string(value);
+}
+std::string in_toml(bool value) {
+  return value ? "true" : "false";
+}
+std::string in_toml(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+      constexpr std::string_view kHex = "0123456789ABCDEF";
+      const auto code = static_cast<unsigned char>(c);
+      out += "\\u00";
+      out += kHex[code / 16];
+      out += kHex[code % 16];
+    } else {
+      out += c;
+    }
+  }
+  return out + "\"";
+}
+/// Any list of numbers.
+template <class V>
+requires(!std::is_convertible_v<V, std::string_view> && !std::is_arithmetic_v<V>) std::string
+    in_toml(const V& v) {
+  std::string text = "[";
+  for (const double x : v) {
+    if (text.size() > 1) text += ", ";
+    text += in_toml(x);
+  }
+  return text += ']';
+}
+
+/// The text of a scene, line by line.
+class Lines {
+ public:
+  void table(const std::string& header) { text_ += "\n" + header + "\n"; }
+  /// key = value  # unit
+  template <class Value>
+  void add(const Key& key, const Value& value) {
+    as_it_is(key, in_toml(value), to_string(key.measure.unit));
+  }
+  /// A value that is TOML already.
+  void as_it_is(const Key& key, const std::string& value, const std::string& remark = {}) {
+    text_ += std::string(key.name) + " = " + value;
+    if (!remark.empty()) text_ += "  # " + remark;
+    text_ += "\n";
+  }
+  std::string text() && { return std::move(text_); }
+
+ private:
+  std::string text_;
+};
+
+/// A table within a line: { key = value, ... }.
+class Inline {
+ public:
+  template <class Value>
+  Inline& add(const Key& key, const Value& value) {
+    text_ += (text_.empty() ? "" : ", ") + std::string(key.name) + " = " + in_toml(value);
+    return *this;
+  }
+  bool empty() const { return text_.empty(); }
+  std::string text() const { return "{ " + text_ + " }"; }
+
+ private:
+  std::string text_;
+};
+
+/// Picks what to do by type; what no case knows does not compile.
+template <class... Cases>
+struct Overloaded : Cases... {
+  using Cases::operator()...;
+};
+template <class... Cases>
+Overloaded(Cases...) -> Overloaded<Cases...>;
+
+template <int Dim>
+class Writer {
+ public:
+  explicit Writer(const Scene<Dim>& scene) : scene_(scene) {}
+
+  std::string write() {
+    write_top();
+    out_.table("[" + std::string(keys::kLaw.name) + "]");
+    write_law(scene_.law);
+    for (const Material& m : scene_.materials) {
+      out_.table("[" + std::string(keys::kMaterials.name) + "." + in_toml(m.name) + "]");
+      if (m.density > 0) out_.add(keys::kMaterialDensity, m.density);
+    }
+    for (const PairLaw& pair : scene_.pairs) {
+      one_of(keys::kPair);
+      out_.as_it_is(keys::kBetween, "[" + in_toml(material_name(pair.a)) + ", " +
+                                        in_toml(material_name(pair.b)) + "]");
+      write_law(pair.law);
+    }
+    for (const Fill<Dim>& fill : scene_.fills) write_fill(fill);
+    for (const PlacedGrain<Dim>& grain : scene_.grains) write_grain(grain);
+    for (const Wall<Dim>& wall : scene_.walls) write_wall(wall);
+    write_output();
+    return std::move(out_).text();
+  }
+
+ private:
+  void one_of(const Key& key) { out_.table("[[" + std::string(key.name) + "]]"); }
+  std::string_view material_name(int material) const {
+    return scene_.materials[static_cast<std::size_t>(material)].name;
+  }
+
+  void write_top() {
+    out_.add(keys::kTitle, std::string_view(scene_.title));
+    out_.add(keys::kDimension, Dim);
+    out_.as_it_is(keys::kSeed, std::to_string(scene_.seed));
+    out_.add(keys::kDuration, scene_.duration);
+    if (scene_.time_step.seconds > 0) {
+      out_.add(keys::kTimeStep, scene_.time_step.seconds);
+    } else {
+      out_.as_it_is(keys::kTimeStep,
+                    "\"" + in_toml(scene_.time_step.fraction_of_contact) + " contact\"");
+    }
+    out_.add(keys::kGravity, scene_.gravity);
+    if (Dim == 2) out_.add(keys::kDepth, scene_.depth);
+    out_.add(keys::kNormalLaw, description_of(scene_.normal).word);
+    out_.add(keys::kFrictionLaw, description_of(scene_.friction).word);
+    out_.add(keys::kIntegrator, name_of(scene_.integrator));
+    out_.add(keys::kNeighbourhood, name_of(scene_.neighbourhood));
+    out_.add(keys::kLargestOverlap, scene_.largest_overlap);
+    out_.add(keys::kLargestInitialOverlap, scene_.largest_initial_overlap);
+    out_.add(keys::kAudit, scene_.audit);
+    if (scene_.audit) out_.add(keys::kAuditEvery, scene_.audit_every);
+  }
+
+  void write_law(const LawNumbers& law) {
+    for (const auto& keys :
+         {description_of(scene_.normal).keys, description_of(scene_.friction).keys}) {
+      for (const LawKey& key : keys) out_.add(detail::key_of(key), law.*key.number);
+    }
+  }
+
+  void write_fill(const Fill<Dim>& fill) {
+    one_of(keys::kFill);
+    out_.add(keys::kName, std::string_view(fill.name));
+    out_.add(keys::kMaterial, material_name(fill.material));
+    if (fill.count) out_.add(keys::kCount, *fill.count);
+    std::visit(
+        Overloaded{
+            [&](double radius) { out_.add(keys::kRadius, radius); },
+            [&](const UniformRadius& law) {
+              out_.as_it_is(keys::kRadius,
+                            Inline{}.add(keys::kUniform, std::array{law.low, law.high}).text());
+            },
+            [&](const ListedRadius& law) {
+              out_.as_it_is(
+                  keys::kRadius,
+                  Inline{}.add(keys::kValues, law.values).add(keys::kWeights, law.weights).text());
+            }},
+        fill.radius);
+    out_.as_it_is(keys::kRegion,
+                  Inline{}.add(keys::kLow, fill.low).add(keys::kHigh, fill.high).text());
+    out_.add(keys::kArrangement, text_of(detail::kArrangementWords, fill.arrangement));
+    if (fill.random_speed > 0) {
+      out_.as_it_is(keys::kVelocity, Inline{}.add(keys::kRandomSpeed, fill.random_speed).text());
+    } else {
+      out_.add(keys::kVelocity, fill.velocity);
+    }
+  }
+
+  void write_grain(const PlacedGrain<Dim>& grain) {
+    one_of(keys::kGrain);
+    out_.add(keys::kPosition, grain.position);
+    out_.add(keys::kRadius, grain.radius);
+    out_.add(keys::kMaterial, material_name(grain.material));
+    if (grain.pinned) {
+      out_.add(keys::kPinned, true);
+      return;
+    }
+    out_.add(keys::kVelocity, grain.velocity);
+    if (scene_.friction == FrictionModel::none) return;
+    if constexpr (Dim == 2) {
+      out_.add(keys::kSpin, grain.spin[0]);
+    } else {
+      out_.add(keys::kSpin, grain.spin);
+    }
+  }
+
+  void write_wall(const Wall<Dim>& wall) {
+    one_of(keys::kWall);
+    out_.add(keys::kName, std::string_view(wall.name));
+    out_.add(keys::kMaterial, material_name(wall.kind));
+    std::visit(Overloaded{[&](const HalfSpace<Dim>& plane) {
+                            out_.add(keys::kPoint, wall.home);
+                            out_.add(keys::kNormal, plane.normal);
+                          },
+                          [&](const Cylinder<Dim>& round) {
+                            out_.add(keys::kPoint, wall.home);
+                            if (Dim == 3) out_.add(keys::kAxis, round.axis);
+                            out_.add(keys::kRadius, round.radius);
+                          },
+                          [&](const WallSegment<Dim>& segment) {
+                            out_.add(keys::kFrom, wall.home);
+                            // `to` could not promise the same bits: to - from is rounded.
+                            out_.add(keys::kAlong, segment.along);
+                          }},
+               wall.shape);
+    write_motion(wall);
+  }
+
+  void write_motion(const Wall<Dim>& wall) {
+    Inline motion;
+    const auto type = [&](detail::MotionType t) {
+      motion.add(keys::kType, text_of(detail::kMotionWords, t));
+    };
+    const auto times = [&](const auto& m) {
+      motion.add(keys::kStart, m.start);
+      if (std::isfinite(m.stop)) motion.add(keys::kStop, m.stop);
+    };
+    std::visit(Overloaded{[](const Fixed&) {},
+                          [&](const Steady<Dim>& m) {
+                            type(detail::MotionType::steady);
+                            motion.add(keys::kVelocity, m.velocity);
+                            times(m);
+                          },
+                          [&](const Shake<Dim>& m) {
+                            type(detail::MotionType::shake);
+                            motion.add(keys::kAmplitude, m.amplitude);
+                            motion.add(keys::kFrequency, m.frequency);
+                            times(m);
+                          },
+                          [&](const Piston<Dim>& m) {
+                            type(detail::MotionType::piston);
+                            motion.add(keys::kPistonMass, m.mass);
+                            motion.add(keys::kLoad, m.load);
+                            motion.add(keys::kStart, m.start);
+                          }},
+               wall.motion);
+    if (!motion.empty()) out_.as_it_is(keys::kMotion, motion.text());
+  }
+
+  void write_output() {
+    out_.table("[" + std::string(keys::kOutput.name) + "]");
+    const OutputPlan& plan = scene_.output;
+    if (plan.frames_every > 0) out_.add(keys::kFramesEvery, plan.frames_every);
+    if (plan.series_every > 0) out_.add(keys::kSeriesEvery, plan.series_every);
+    out_.add(keys::kContacts, plan.contacts);
+  }
+
+  const Scene<Dim>& scene_;
+  Lines out_;
+};
+
+}  // namespace
+
+std::string_view name_of(NormalModel model) {
+  return description_of(model).word;
+}
+std::string_view name_of(FrictionModel model) {
+  return description_of(model).word;
+}
+std::string_view name_of(IntegratorModel model) {
+  return text_of(detail::kIntegratorWords, model);
+}
+std::string_view name_of(NeighbourhoodModel model) {
+  return text_of(detail::kNeighbourhoodWords, model);
+}
+
+template <int Dim>
+std::string to_toml(const Scene<Dim>& scene) {
+  return Writer<Dim>(scene).write();
+}
+
+template std::string to_toml<2>(const Scene<2>&);
+template std::string to_toml<3>(const Scene<3>&);
+
+}  // namespace lagrain
