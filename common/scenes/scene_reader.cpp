@@ -8,6 +8,7 @@
 #include <fstream>
 #include <numeric>
 #include <sstream>
+#include <stdexcept>
 
 namespace lagrain {
 namespace {
@@ -40,32 +41,35 @@ std::optional<double> fraction_in(std::string_view text) {
   return fraction;
 }
 
+bool is_time(const std::string& text) {
+  try {
+    return parse_quantity(text).unit == detail::kTime.unit;
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+}
+
+/// A time, or a fraction of the shortest contact time.
 TimeStep read_time_step(TomlTable& top) {
-  TimeStep step;
-  if (!top.has(keys::kTimeStep)) return step;
+  const Key& key = keys::kTimeStep;
   const std::string what = "a fraction of contact time (\"1/25 contact\") or a time";
-  if (!top.holds_number(keys::kTimeStep)) {
-    if (!top.holds_text(keys::kTimeStep)) top.expected(keys::kTimeStep, what);
-    std::string_view text;
-    const std::string whole = top.text(keys::kTimeStep);
-    text = whole;
+  TimeStep step;
+  if (!top.has(key)) return step;
+  if (top.holds_text(key)) {
+    const std::string whole = top.text(key);
     constexpr std::string_view kUnit = "contact";
-    if (text.ends_with(kUnit)) {
-      text.remove_suffix(kUnit.size());
-      const std::optional<double> fraction = fraction_in(text);
-      if (!fraction) top.expected(keys::kTimeStep, what);
+    if (whole.ends_with(kUnit)) {
+      const auto fraction =
+          fraction_in(std::string_view(whole).substr(0, whole.size() - kUnit.size()));
+      if (!fraction) top.expected(key, what);
       step.fraction_of_contact = *fraction;
       return step;
     }
-    try {
-      if (parse_quantity(text).unit != keys::kTimeStep.measure.unit) {
-        top.expected(keys::kTimeStep, what);
-      }
-    } catch (const std::invalid_argument&) {
-      top.expected(keys::kTimeStep, what);
-    }
+    if (!is_time(whole)) top.expected(key, what);
+  } else if (!top.holds_number(key)) {
+    top.expected(key, what);
   }
-  step.seconds = top.number(keys::kTimeStep);
+  step.seconds = top.number(key);
   return step;
 }
 
