@@ -1,6 +1,7 @@
 # cmake -D LAGRAIN=<build folder> -D WORK=<scratch folder> -D RENDER=<0|1> -D CXX=<compiler>
 #   -D GENERATOR=<CMake generator> -P check.cmake
-# Installs lagrain, builds the project beside this file with nothing but the installed copy, runs it.
+# Installs lagrain, builds the project beside this file (the examples, and the README's program) with
+# nothing but the installed copy, and runs it.
 
 # An old copy would hide a header that is no longer installed.
 file(REMOVE_RECURSE ${WORK})
@@ -21,9 +22,4 @@ run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK}/build -G ${GENERATO
   -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_PREFIX_PATH=${WORK}/prefix -D RENDER=${RENDER}
   -D README_PROGRAM=${WORK}/readme.cpp)
 run(${CMAKE_COMMAND} --build ${WORK}/build)
-run(${WORK}/build/discs)
-run(${WORK}/build/spheres)
-run(${WORK}/build/readme)
-if(RENDER)
-  run(${WORK}/build/picture)
-endif()
+run(${CMAKE_CTEST_COMMAND} --test-dir ${WORK}/build --output-on-failure --no-tests=error)
