@@ -1,9 +1,8 @@
 // A first packing: 300 discs of two sizes fall into a box and come to rest. What there is stands in
 // the text of a scene; the program runs it and measures.
-// To build it: find_package(lagrain 0.1) and lagrain::dim2, as in CMakeLists.txt.
+// To build it: find_package(lagrain 0.1) and lagrain::scenes, as in CMakeLists.txt.
 
 #include <lagrain/run.hpp>
-#include <lagrain/triangulation2.hpp>
 
 #include <cmath>
 #include <cstdio>
@@ -36,7 +35,7 @@ open = ["top"]
 
 int main() {
   const Scene<2> scene = parse_scene<2>(kScene, "first packing");
-  const auto run = make_run(scene, AnyNeighbourhood<2>(TriangulationNeighbourhood<2>()));
+  const auto run = make_run(scene);
   run->advance_to(scene.duration);
 
   const double weight = 9.81 * run->masses().sum();  // [N]
