@@ -21,7 +21,7 @@ class Csv {
  public:
   Csv() = default;
   /// @param head  the first line: "step[s],error[-]"
-  explicit Csv(std::string_view head) : text_(std::string(head) + "\n") {}
+  explicit Csv(std::string_view head) : text_(head) { text_ += '\n'; }
 
   /// A whole row of numbers and texts.
   template <class... Cells>
