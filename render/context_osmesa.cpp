@@ -2,7 +2,7 @@
 
 #include <lagrain/check.hpp>
 
-// Brings in GL/gl.h with its global prototypes; therefore included here and nowhere else.
+// This header brings in GL/gl.h with its global prototypes; it is included here and nowhere else.
 #include <GL/osmesa.h>
 
 #include <array>
@@ -56,7 +56,7 @@ class OsMesa final : public GlContext {
 
 }  // namespace
 
-std::unique_ptr<GlContext> make_context() {
+std::unique_ptr<GlContext> make_osmesa() {
   return std::make_unique<OsMesa>();
 }
 

@@ -64,4 +64,7 @@ inline double psnr(const Image& a, const Image& b) {
 /// What the figures consist of: cells, edges, discs, contacts, labels, a plot, a colour bar.
 DisplayList mixed_list();
 
+/// Balls in a box on a floor, tubes, lines and a cut among them.
+Scene3 heap();
+
 }  // namespace lagrain::test

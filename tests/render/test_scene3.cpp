@@ -20,6 +20,7 @@
 #include <vector>
 
 using namespace lagrain;
+using lagrain::test::heap;
 using lagrain::test::ink;
 using lagrain::test::pixel;
 
@@ -42,31 +43,6 @@ Scene3 scene(double height, bool perspective = false) {
 Scene3 one_ball(bool perspective = false) {
   Scene3 one = scene(4, perspective);
   one.balls.push_back({{0, 0, 0}, 1, kRed});
-  return one;
-}
-
-// Balls in a box on a floor, tubes and lines among them.
-Scene3 heap() {
-  Scene3 one;
-  Random random(5);
-  for (int k = 0; k < 60; ++k) {
-    const double r = random.uniform(0.03, 0.09);
-    one.balls.push_back({{random.uniform(), random.uniform(), r + 0.6 * random.uniform()},
-                         r,
-                         colour(ColourMap::viridis, random.uniform())});
-  }
-  for (int k = 0; k < 20; ++k) {
-    one.tubes.push_back({{random.uniform(), random.uniform(), random.uniform()},
-                         {random.uniform(), random.uniform(), random.uniform()},
-                         0.01});
-  }
-  const Box3 box{{0, 0, 0}, {1, 1, 1}};
-  add_edges(one, box);
-  one.floor = Floor{};
-  one.panes.push_back({{{{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}}}});
-  one.cuts.push_back({{1, -1, 0}, 0.5});
-  one.camera = look(box, {-0.6, 1, -0.5}, {0, 0, 1}, 1, 0.5);
-  one.subframes = 3;
   return one;
 }
 
