@@ -40,7 +40,8 @@ Scene3 seen_from_below(const Run<3>& run, const Columns<3>& x, int subframes) {
   const double width = 2 * run.scene().grains[0].position.x();  // the large one is in the middle
   const Box3 box{Vec<3>::Zero(), {width, width, 0.6 * width}};
   add_edges(scene, box);
-  scene.camera = look({box.low, {width, width, 0.01 * width}}, {0, 0, 1}, {0, 1, 0}, 1, 0.35, 0.03);
+  scene.camera =
+      camera_framing({box.low, {width, width, 0.01 * width}}, {0, 0, 1}, {0, 1, 0}, 1, 0.35, 0.03);
   scene.lights = over_the_shoulder(scene.camera);
   scene.subframes = subframes;
   return scene;

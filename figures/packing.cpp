@@ -269,7 +269,7 @@ void add_packing(DisplayList& list, const Vec<2>& low, double width, const Packi
     }
   }
   scene.floor = Floor{whole.low.z()};
-  scene.camera = look(whole, {0.5, 0.8, -0.4}, {0, 0, 1}, 1, 0.4);
+  scene.camera = camera_framing(whole, {0.5, 0.8, -0.4}, {0, 0, 1}, 1, 0.4);
   scene.subframes = quick ? kPreviewSubframes : kPrintSubframes;
   list.add(paint_scene3(scene, Box{low, low + Vec<2>(width, width)}));
   list.add(Label{.text = text,

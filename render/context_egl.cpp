@@ -19,8 +19,8 @@ Function egl_function(const char* name) {
 }
 
 // Mesa's software rasteriser is taken even where there is a graphics card, so that the pictures are
-// the same bits with and without one. EGL counts it as a device of its own (EGL_EXT_platform_device,
-// EGL_MESA_device_software).
+// the same bits with and without one. EGL counts it as a device of its own
+// (EGL_EXT_platform_device, EGL_MESA_device_software).
 EGLDisplay software_display() {
   const auto query_devices = egl_function<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
   const auto query_string = egl_function<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");

@@ -73,6 +73,10 @@ Current::~Current() {
   context_->release();
 }
 
+std::string define(const char* name, int value) {
+  return std::string("#define ").append(name).append(" ").append(std::to_string(value)) + "\n";
+}
+
 GLuint program(const std::string& vertex, const std::string& fragment) {
   const GLuint id = CreateProgram();
   const GLuint v = shader(GL_VERTEX_SHADER, vertex), f = shader(GL_FRAGMENT_SHADER, fragment);

@@ -93,6 +93,11 @@ class Current {
   detail::GlContext* context_;
 };
 
+/// The line that every shader begins with.
+inline const std::string kVersion = "#version 330 core\n";
+/// A line that tells a shader a number under a name.
+std::string define(const char* name, int value);
+
 /// Compiles and links a program. @throws ContractError with the compiler's message
 GLuint program(const std::string& vertex, const std::string& fragment);
 

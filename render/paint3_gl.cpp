@@ -46,10 +46,17 @@ using detail::Vec2f;
 using detail::Vec3f;
 using detail::View;
 
-constexpr int kMapSize = 512;       // of a shadow map, in texels
-constexpr float kMapReach = 1.02F;  // half its width; the scene's radius is 1
-constexpr int kMostCuts = 8;
-constexpr int kBodiesPerRow = 512;  // of the table that the last pass reads
+namespace source = detail::shaders3;
+
+constexpr float kMapReach = 1.02F;  // half the width of a shadow map; the scene's radius is 1
+
+// Lights of the sky in a sub-frame. Their directions differ from one sub-frame to the next; a
+// picture of a single one has to do without that, and gets more of them.
+constexpr int kSkyLights = 4, kSkyLightsAlone = 8;
+static_assert(std::max(kSkyLights, kSkyLightsAlone) < source::kMostLights);
+
+// Sides of the tiles of the sieve, in pixels of the picture and in texels of a shadow map.
+constexpr int kPictureTile = 4, kMapTile = 2;
 
 float from_srgb(std::uint8_t value) {
   const double v = value / 255.0;
@@ -70,8 +77,8 @@ View light_view(const Vec3f& towards, int index, const Vec2f& jitter) {
   view.half_size.setConstant(kMapReach);
   view.jitter = jitter;
   view.extent = 2 * kMapReach;
-  view.x = index * kMapSize;
-  view.width = view.height = kMapSize;
+  view.x = index * source::kMapSize;
+  view.width = view.height = source::kMapSize;
   return view;
 }
 
@@ -88,8 +95,10 @@ double halton(int index, int base) {
 class Painter {
  public:
   Painter() {
-    namespace source = detail::shaders3;
-    const std::string view = source::kView;
+    const std::string view = gl::kVersion + gl::define("MAP_SIZE", source::kMapSize) +
+                             gl::define("BODIES_PER_ROW", source::kBodiesPerRow) +
+                             gl::define("MOST_CUTS", source::kMostCuts) +
+                             gl::define("MOST_LIGHTS", source::kMostLights) + source::kView;
     const std::string body = view + source::kBodyVertexShader;
     ball_ = gl::program(body, view + source::kBallFragmentShader);
     body_ = gl::program(body, view + source::kBodyFragmentShader);
@@ -114,7 +123,7 @@ class Painter {
   Image paint(const Scene3& scene, int width, int height, double dpi) {
     take(scene, width, height, dpi);
     const int frames = scene.subframes;
-    const int sky = frames == 1 ? 8 : 4;
+    const int sky = frames == 1 ? kSkyLightsAlone : kSkyLights;
 
     sum_.bind(width, height);
     gl::ClearColor(0, 0, 0, 0);
@@ -202,7 +211,8 @@ class Painter {
     table_.insert(table_.end(), {c[0], c[1], c[2], lit ? 1.0F : 0.0F});
   }
 
-  // Bodies relative to the scene's middle, what the cuts leave of them, and the camera's view.
+  // Takes in a scene: its bodies relative to its middle, what the cuts leave of them, and the
+  // camera's view.
   void take(const Scene3& scene, int width, int height, double dpi) {
     measure(scene);
     balls_.clear(), is_cut_.clear(), tubes_.clear(), lines_.clear(), cuts_.clear(), table_.clear();
@@ -213,7 +223,7 @@ class Painter {
       cuts_.push_back({static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2]),
                        static_cast<float>((cut.offset / length - n.dot(origin_)) / unit_)});
     }
-    // How far a point reaches into what the cuts take out.
+    // Tells how far a point reaches into what the cuts take out.
     const auto outside = [this](const std::array<float, 3>& p) {
       float most = -std::numeric_limits<float>::infinity();
       for (const std::array<float, 4>& cut : cuts_) {
@@ -237,13 +247,13 @@ class Painter {
       const double half = 0.5 * std::max(1.0, line.stroke.width * dpi / 72);
       add_body(lines_, line.a, line.b, static_cast<float>(half), line.stroke.colour, false);
     }
-    const std::size_t row = std::size_t{12} * kBodiesPerRow;
+    const std::size_t row = std::size_t{12} * source::kBodiesPerRow;
     if (table_.size() > row * gl::kLargest) {
       throw SceneError("a scene of " + std::to_string(table_.size() / 12) +
                        " balls, tubes and lines is too large");
     }
     table_.resize(std::max<std::size_t>(1, (table_.size() + row - 1) / row) * row);
-    upload(body_table_, 3 * kBodiesPerRow, table_);
+    upload(body_table_, 3 * source::kBodiesPerRow, table_);
     aim(scene.camera, width, height);
     take_panes(scene.panes);
   }
@@ -278,11 +288,12 @@ class Painter {
     for (const Body& line : lines_) cover(line.from, 0), cover(line.to, 0);
     if (view_.perspective) least = std::max(least, 0.0F);
     view_.nearest = least < most ? least : 0;
+    // A little more, so that rounding takes nothing out of the range.
     view_.extent = least < most ? 1.001F * (most - least) : 1;
   }
 
-  // A row of six texels each: the plane normal . x = offset, four sides within which
-  // normal . x <= offset, the colour. The farthest first.
+  // Writes the panes into a table, the farthest first. A pane is a row of six texels: its plane
+  // normal . x = offset, its four sides, within which normal . x <= offset, and its colour.
   void take_panes(std::vector<Pane> panes) {
     const auto depth = [this](const Pane& pane) {
       Vec<3> sum = Vec<3>::Zero();
@@ -322,7 +333,7 @@ class Painter {
 
   // ---- passes ----
 
-  // Which body is seen through each pixel, and how deep.
+  // Draws which body is seen through each pixel, and how deep.
   void see(const Vec2f& jitter) {
     view_.jitter = {jitter[0] / static_cast<float>(view_.width),
                     jitter[1] / static_cast<float>(view_.height)};
@@ -334,15 +345,16 @@ class Painter {
     gl::Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     Drawn drawn;
     drawn.others = tubes_;
-    sieve_.sift(view_, balls_, is_cut_, 4, false, drawn);
+    sieve_.sift(view_, balls_, is_cut_, kPictureTile, false, drawn);
     draw(ball_, view_, drawn.balls);
     draw(body_, view_, drawn.others);
     draw(line_, view_, lines_);
     gl::Disable(GL_DEPTH_TEST);
   }
 
-  // The lights of a sub-frame and their shadow maps.
+  // Chooses the lights of a sub-frame and draws their shadow maps.
   void shine(const Scene3& scene, int frame, int frames, int sky, const Vec2f& jitter) {
+    // The golden angle, pi (3 - sqrt 5): its multiples spread evenly over the circle.
     constexpr double kGolden = std::numbers::pi * (3 - 2.2360679774997896964);
     const auto around = [](const Vec<3>& axis, double cosine, double angle) -> Vec3f {
       const Vec<3> middle = axis.normalized(), right = middle.unitOrthogonal(),
@@ -354,11 +366,12 @@ class Painter {
     lights_.clear();
     strengths_.clear();
     const double rim = std::sqrt((frame + 0.5) / frames) * scene.lights.sun_radius;
-    const Vec2f map_jitter = jitter / static_cast<float>(kMapSize);
+    const Vec2f map_jitter = jitter / static_cast<float>(source::kMapSize);
     lights_.push_back(
         light_view(around(scene.lights.sun, std::cos(rim), kGolden * frame), 0, map_jitter));
     strengths_.push_back(static_cast<float>(scene.lights.sun_strength));
-    // Evenly over the hemisphere; a surface that sees all of it gets the full strength.
+    // The lights stand evenly over the hemisphere; a surface that sees all of it gets the full
+    // strength.
     for (int k = 0; k < sky; ++k) {
       const int index = frame + k * frames;
       const double cosine = 1 - (index + 0.5) / (frames * sky);
@@ -367,22 +380,22 @@ class Painter {
       strengths_.push_back(static_cast<float>(2 * scene.lights.sky_strength / sky));
     }
 
-    shadows_.bind(kMapSize * (sky + 1), kMapSize);
+    shadows_.bind(source::kMapSize * (sky + 1), source::kMapSize);
     gl::Enable(GL_DEPTH_TEST);
     gl::DepthFunc(GL_LESS);
     gl::Clear(GL_DEPTH_BUFFER_BIT);
     for (const View& light : lights_) {
-      gl::Viewport(light.x, 0, kMapSize, kMapSize);
+      gl::Viewport(light.x, 0, source::kMapSize, source::kMapSize);
       Drawn drawn;
       drawn.others = tubes_;
-      sieve_.sift(light, balls_, is_cut_, 2, true, drawn);
+      sieve_.sift(light, balls_, is_cut_, kMapTile, true, drawn);
       draw(ball_shadow_, light, drawn.balls);
       draw(body_shadow_, light, drawn.others);
     }
     gl::Disable(GL_DEPTH_TEST);
   }
 
-  // Light on what is seen, into the sum.
+  // Adds the light on what is seen to the sum.
   void add(const Scene3& scene, int frames, int lights, const Vec2f& jitter, double dpi) {
     sum_.bind(view_.width, view_.height);
     gl::Enable(GL_BLEND);
@@ -408,7 +421,8 @@ class Painter {
     gl::Uniform1fv(at(light_, "strength"), lights, strengths_.data());
     set(light_, "lights", lights);
     gl::Uniform1f(at(light_, "map_reach"), kMapReach);
-    gl::Uniform2f(at(light_, "map_jitter"), jitter[0] / kMapSize, jitter[1] / kMapSize);
+    gl::Uniform2f(at(light_, "map_jitter"), jitter[0] / source::kMapSize,
+                  jitter[1] / source::kMapSize);
     set(light_, "pane_count", pane_count_);
     set(light_, "has_ground", scene.floor ? 1 : 0);
     if (scene.floor) {
@@ -453,7 +467,7 @@ class Painter {
     if (bodies.empty()) return;
     gl::UseProgram(program);
     set(program, view);
-    // Cuts as the view sees them: the same sides, in its coordinates.
+    // The shaders want the cuts in the coordinates of the view.
     std::vector<float> cuts;
     for (const std::array<float, 4>& cut : cuts_) {
       const Vec3f n = view.axes * Eigen::Map<const Vec3f>(cut.data());
@@ -500,7 +514,7 @@ void expect_paintable(const Scene3& scene, int width, int height) {
   LAGRAIN_EXPECTS(scene.camera.height > 0 && scene.subframes >= 1,
                   "paint_scene3: the camera's height is " + std::to_string(scene.camera.height) +
                       " m, the number of sub-frames " + std::to_string(scene.subframes));
-  LAGRAIN_EXPECTS(scene.cuts.size() <= kMostCuts,
+  LAGRAIN_EXPECTS(scene.cuts.size() <= source::kMostCuts,
                   "paint_scene3: " + std::to_string(scene.cuts.size()) + " cuts");
   LAGRAIN_EXPECTS(scene.lights.sun.norm() > 0 && scene.lights.zenith.norm() > 0 &&
                       (!scene.floor || scene.floor->normal.norm() > 0),

@@ -27,7 +27,7 @@ namespace {
 using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
 
 cairo_font_face_t* font_face(detail::Font font) {
-  // Never destroyed, like the FreeType faces beneath.
+  // The faces are never destroyed, like the FreeType faces beneath.
   static const std::array<cairo_font_face_t*, 2> faces = [] {
     const auto make = [](detail::Font f) {
       return cairo_ft_font_face_create_for_ft_face(detail::cairo_face(f), 0);
@@ -261,7 +261,7 @@ std::string renumbered(const std::string& svg) {
   return out;
 }
 
-// Finishing writes the trailer; only then are the bytes complete.
+// The bytes of a surface, which are complete once it has been finished.
 std::string finished(const Surface& surface, const std::string& bytes) {
   cairo_surface_finish(surface.get());
   const cairo_status_t status = cairo_surface_status(surface.get());

@@ -11,19 +11,20 @@
 #include <cstring>
 
 // Every item becomes one instance of a quad that just covers it; the fragment shader computes the
-// signed distance to the shape and turns it into the covered share of the pixel. All items of a
-// picture share one program and nearly always one draw call, so that painter's order is the order
-// of instances. Coverage is analytic, and for stills there are 2 x 2 samples a pixel on top:
-// measured against a 36-sample picture this beats four-sample multisampling by 15 dB at the same
-// price.
+// signed distance to the shape and turns it into the covered share of the pixel. Items are drawn in
+// the order of the list, most of them in one draw call. Coverage is analytic, and stills have 2 x 2
+// samples a pixel on top. For 20,415 discs with outlines on 2400 x 1600 pixels, the peak
+// signal-to-noise ratio to a picture of 36 samples a pixel is 44.7 dB; multisampling with four
+// samples, which takes as long, has 29.2 dB.
 
 namespace lagrain {
 namespace {
 
-// What the shader knows, in samples (pixels of the supersampled picture), y up.
+// An item as the shaders read it. Lengths are in samples, the pixels of the supersampled picture; y
+// points up.
 struct Instance {
   std::array<float, 4> quad{};   // centre, half axis along
-  std::array<float, 4> shape{};  // see the shader
+  std::array<float, 4> shape{};  // of each kind its own, see the fragment shader
   std::array<float, 4> clip{};   // low, high
   float across = 0;              // half width of the quad perpendicular to the axis
   float kind = 0;
@@ -36,9 +37,15 @@ static_assert(sizeof(Instance) == 72);
 
 enum Kind { kDisc, kCapsule, kPolygon, kMask, kImage };
 
-// Textures that grow by rows: polygon corners and label masks are addressed by texel.
-constexpr int kCornerRow = 1024;
-constexpr int kAtlasRow = 4096;
+// Corners of polygons and masks of labels lie in textures of these widths, which grow by rows.
+constexpr int kCornerRow = 1024;  // [texels], a corner each
+constexpr int kAtlasRow = 4096;   // [texels]
+// A picture with more corners is drawn in parts: the shader counts corners in a float, which is
+// exact up to 2^24, and a texture has at most gl::kLargest rows.
+constexpr std::size_t kMostCorners = 4'000'000;
+// So many items of one kind in a row are drawn by the program of that kind, fewer by the general
+// one.
+constexpr std::size_t kLongRun = 200;
 
 const char* const kVertexShader = R"(#version 330 core
 layout(location = 0) in vec4 quad;
@@ -62,8 +69,9 @@ void main() {
 }
 )";
 
-// With ONLY defined the kind is a constant: the software rasteriser executes every branch for every
-// pixel, so a program for one kind is about twice as fast as the general one.
+// The shader is compiled once for all kinds and, with ONLY defined, once for each kind of which a
+// figure may have thousands: the software rasteriser executes every branch for every pixel, so a
+// program for one kind is about twice as fast as the general one.
 const char* const kFragmentShader = R"(
 flat in vec4 shape, clip, fill, line;
 flat in vec2 centre;
@@ -77,9 +85,10 @@ uniform sampler2D corners, atlas, image;
 uniform int image_enlarged;
 out vec4 colour;
 
-// Share of a pixel, a unit square, on one side of a straight edge: exact, so that the shares of all
-// pixels add up to the area. t is the distance of the pixel's middle from the edge, positive inside,
-// n the edge's unit normal. The square's projection on n is the sum of two boxes.
+// Share of a pixel, a unit square, on one side of a straight edge. It is exact, so that the shares
+// of all pixels add up to the area. t is the distance of the pixel's middle from the edge, positive
+// inside, n the edge's unit normal. The square's projection on n is the convolution of two boxes of
+// widths a and b; b is kept off zero, which it is divided by.
 float share(float t, vec2 n) {
   float a = max(abs(n.x), abs(n.y)), b = max(min(abs(n.x), abs(n.y)), 0.002);
   vec4 s = clamp(t, -0.75, 0.75) + 0.5 * vec4(a + b, a - b, b - a, -a - b);
@@ -110,7 +119,9 @@ vec2 from_segment(vec2 p, vec2 a, vec2 b) {
   return p - a - t * along;
 }
 
-vec2 corner(int k) { return texelFetch(corners, ivec2(k % 1024, k / 1024), 0).xy; }
+vec2 corner(int k) {
+  return texelFetch(corners, ivec2(k % CORNER_ROW, k / CORNER_ROW), 0).xy;
+}
 
 // Colour with straight alpha times coverage, premultiplied.
 vec4 ink(vec4 c, float part) { return vec4(c.rgb, 1.0) * (c.a * part); }
@@ -118,15 +129,15 @@ vec4 over(vec4 top, vec4 below) { return top + (1.0 - top.a) * below; }
 
 void main() {
   vec2 p = gl_FragCoord.xy;
-  if (kind == 0) {  // disc: the outline lies inside the radius, the fill ends at its middle
+  if (kind == DISC) {  // disc: the outline lies inside the radius, the fill ends at its middle
     float d = length(p - centre);
     vec2 n = d > 1e-3 ? (p - centre) / d : vec2(1.0, 0.0);
     vec4 area = ink(fill, disc(d, size - 0.5 * stroke, n));
     float ring = disc(d, size, n) - (stroke < size ? disc(d, size - stroke, n) : 0.0);
     colour = stroke > 0.0 ? over(ink(line, ring), area) : area;
-  } else if (kind == 1) {  // capsule between shape.xy and shape.zw
+  } else if (kind == CAPSULE) {  // capsule between shape.xy and shape.zw
     colour = ink(line, ribbon(from_segment(p, shape.xy, shape.zw), shape.zw - shape.xy, stroke));
-  } else if (kind == 2) {  // convex polygon, counter-clockwise: first corner, number of corners
+  } else if (kind == POLYGON) {  // convex, counter-clockwise: first corner, number of corners
     int first = int(shape.x), count = int(shape.y);
     float outside = -1e30, nearest = 1e30;
     vec2 edge_normal = vec2(1.0, 0.0), nearest_v = vec2(0.0), nearest_along = vec2(1.0, 0.0);
@@ -146,7 +157,7 @@ void main() {
     }
     colour = ink(fill, share(-outside, edge_normal));
     if (stroke > 0.0) colour = over(ink(line, ribbon(nearest_v, nearest_along, stroke)), colour);
-  } else if (kind == 3) {  // label: texel of the mask = sample + shape.xy
+  } else if (kind == MASK) {  // label: texel of the mask = sample + shape.xy
     colour = ink(line, texelFetch(atlas, ivec2(floor(p) + shape.xy), 0).r);
   } else {  // image in the box shape.xy to shape.zw
     vec2 at = (p - shape.xy) / (shape.zw - shape.xy);
@@ -176,17 +187,18 @@ std::array<std::uint8_t, 4> bytes(Colour c) {
   return {c.r, c.g, c.b, c.a};
 }
 
-// Programs and buffers, kept from picture to picture: making them costs as much as a
-// small figure.
+// Keeps programs and buffers from picture to picture: making them costs as much as a small figure.
 class Painter {
  public:
   Painter() {
-    const std::string version = "#version 330 core\n";
+    const std::string head = gl::kVersion + gl::define("DISC", kDisc) +
+                             gl::define("CAPSULE", kCapsule) + gl::define("POLYGON", kPolygon) +
+                             gl::define("MASK", kMask) + gl::define("CORNER_ROW", kCornerRow);
     for (std::size_t k = 0; k < only_.size(); ++k) {
       only_[k] = gl::program(kVertexShader,
-                             version + "#define ONLY " + std::to_string(k) + kFragmentShader);
+                             head + gl::define("ONLY", static_cast<int>(k)) + kFragmentShader);
     }
-    items_ = gl::program(kVertexShader, version + kFragmentShader);
+    items_ = gl::program(kVertexShader, head + kFragmentShader);
     reduce_ = gl::program(gl::kWholeVertexShader, kReduceFragmentShader);
     gl::GenVertexArrays(1, &array_);
     gl::GenBuffers(1, &buffer_);
@@ -327,8 +339,7 @@ class Painter {
     } else {
       std::for_each(polygon.corners.rbegin(), polygon.corners.rend(), corner);
     }
-    // The shader addresses corners by a float; stay far below 2^24.
-    if (corners_.size() > 8'000'000) flush();
+    if (corners_.size() / 2 > kMostCorners) flush();
   }
 
   void put(const Polyline& line) {
@@ -427,8 +438,6 @@ class Painter {
     gl::bind_texture(2, image_texture_ != 0 ? image_texture_ : atlas_texture);
 
     gl::BindVertexArray(array_);
-    // Short runs of one kind share the general program, long ones have their own.
-    constexpr std::size_t kLongRun = 200;
     for (std::size_t first = 0, mixed = 0; first < instances_.size();) {
       std::size_t end = first;
       while (end < instances_.size() && instances_[end].kind == instances_[first].kind) ++end;
@@ -485,7 +494,7 @@ Image paint_rgba(const DisplayList& list, double dpi, Quality quality) {
                   "paint_rgba: a page of " + std::to_string(list.width) + " x " +
                       std::to_string(list.height) + " pt at " + std::to_string(dpi) + " dpi");
   const gl::Current current;
-  // Never destroyed, like the context.
+  // The painter is never destroyed, like the context.
   static Painter* const painter = new Painter;
   return painter->paint(list, dpi, quality == Quality::still ? 2 : 1);
 }

@@ -15,8 +15,15 @@ namespace {
 
 constexpr double kTickLength = 2.5;  // [pt]
 constexpr double kGap = 2.5;         // between a tick and its label, and so on [pt]
+// Room that a tick with its label takes, along a horizontal and a vertical axis [pt].
+constexpr double kTickWidth = 40, kTickHeight = 22;
 
-// Minus signs need mathematics; digits look alike in both fonts.
+// As many ticks as there is room for, but not so many that an axis becomes a ruler.
+int tick_count(double length, double each) {
+  return std::clamp(static_cast<int>(length / each), 2, 8);
+}
+
+// A number in the markup of labels. Minus signs need mathematics; digits look alike in both fonts.
 std::string number(double value, int decimals) {
   std::array<char, 64> text{};
   std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
@@ -26,7 +33,7 @@ std::string number(double value, int decimals) {
   return out;
 }
 
-// Shortest decimal form with at most six digits.
+// The shortest decimal form with at most six decimals.
 std::string plain(double value) {
   for (int decimals = 0; decimals < 6; ++decimals) {
     const double factor = std::pow(10, decimals);
@@ -50,7 +57,7 @@ bool shown(double value, const Axis& axis) {
   return std::isfinite(value) && (!axis.log || value > 0);
 }
 
-// From the axis' unit to the page, along one direction.
+// Maps values in the axis' unit to the page, along one direction.
 struct Scale {
   double low, high;  // range of values
   double from, to;   // on the page [pt]
@@ -269,14 +276,12 @@ Box add_plot(DisplayList& list, const Box& area, const Plot& plot) {
   Scale x{0, 1, 0, 1, plot.x.log}, y{0, 1, 0, 1, plot.y.log};
   range(plot.x, plot.series, &Series::x, x.low, x.high);
   range(plot.y, plot.series, &Series::y, y.low, y.high);
-  const auto count = [](double length, double each) {
-    return std::clamp(static_cast<int>(length / each), 2, 8);
-  };
   const Vec<2> size = area.size();
-  const Ticks xt = (x.log ? log_ticks : nice_ticks)(x.low, x.high, count(size[0], 40));
-  const Ticks yt = (y.log ? log_ticks : nice_ticks)(y.low, y.high, count(size[1], 22));
+  const Ticks xt = (x.log ? log_ticks : nice_ticks)(x.low, x.high, tick_count(size[0], kTickWidth));
+  const Ticks yt =
+      (y.log ? log_ticks : nice_ticks)(y.low, y.high, tick_count(size[1], kTickHeight));
 
-  // Margins from the text that has to fit.
+  // The text that has to fit decides on the margins.
   double y_labels = 0, last_x = 0;
   for (const Tick& tick : yt.ticks) {
     y_labels = std::max(y_labels, text_extents(tick.label, style::kSmallText).advance);
@@ -365,7 +370,7 @@ void add_colour_bar(DisplayList& list, const Box& bar, ColourMap map, double low
   }
   list.add(Picture{image, bar});
   add_frame(list, bar);
-  const Ticks ticks = nice_ticks(low, high, std::clamp(static_cast<int>(bar.size()[1] / 22), 2, 8));
+  const Ticks ticks = nice_ticks(low, high, tick_count(bar.size()[1], kTickHeight));
   for (const Tick& tick : ticks.ticks) {
     const double y = bar.low[1] + (tick.value - low) / (high - low) * bar.size()[1];
     list.add(Segment{{bar.high[0], y}, {bar.high[0] + kTickLength, y}, style::kAxisLine});

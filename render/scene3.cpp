@@ -24,20 +24,21 @@ Eigen::Matrix3d page_axes(const Camera& camera) {
   return rows;
 }
 
-Camera look(const Box3& box, const Vec<3>& direction, const Vec<3>& up, double aspect,
-            double field_of_view, double margin) {
+Camera camera_framing(const Box3& box, const Vec<3>& direction, const Vec<3>& up, double aspect,
+                      double field_of_view, double margin) {
   LAGRAIN_EXPECTS(box.size().minCoeff() >= 0 && box.size().maxCoeff() > 0,
-                  "look: the box is a point or inside out");
+                  "camera_framing: the box is a point or inside out");
   LAGRAIN_EXPECTS(aspect > 0 && field_of_view >= 0 && field_of_view < std::numbers::pi &&
                       margin >= 0 && margin < 0.5,
-                  "look: aspect " + std::to_string(aspect) + ", field of view " +
+                  "camera_framing: aspect " + std::to_string(aspect) + ", field of view " +
                       std::to_string(field_of_view) + " rad, margin " + std::to_string(margin));
   Camera camera{box.centre() - direction, box.centre(), up, 1, field_of_view > 0};
   const Eigen::Matrix3d rows = page_axes(camera);
 
-  // Seen from the eye (x, y, z) the picture is 2 t (z - c) high where a corner has c. Corner (a, b,
-  // c) lies inside it while |b - y| <= t (z - c), that is, while max(b + t c) <= y + t z and min(b
-  // - t c) >= y - t z; and likewise across. Parallel lines of sight are the limit t -> 0.
+  // Seen from the eye (x, y, z) the picture is 2 t (z - c) high at the depth of a corner (a, b, c).
+  // The corner lies inside it while |b - y| <= t (z - c). All do so while
+  // max(b + t c) <= y + t z and min(b - t c) >= y - t z; and likewise across. Parallel lines of
+  // sight are the limit t -> 0.
   const double shrink = 1 - 2 * margin, half = std::tan(0.5 * field_of_view) * shrink;
   const Vec<2> t(half * aspect, half);
   const double inf = std::numeric_limits<double>::infinity();
@@ -67,8 +68,8 @@ Camera look(const Box3& box, const Vec<3>& direction, const Vec<3>& up, double a
 }
 
 Lights over_the_shoulder(const Camera& camera) {
-  const Eigen::Matrix3d page =
-      page_axes(camera).transpose();  // columns: right, up, towards the viewer
+  // Columns: right, up, towards the viewer.
+  const Eigen::Matrix3d page = page_axes(camera).transpose();
   Lights lights;
   lights.sun = page * Vec<3>(-0.4, 0.55, 1);
   lights.zenith = page * Vec<3>(0, 0.6, 0.8);

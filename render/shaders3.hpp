@@ -4,8 +4,14 @@
 
 namespace lagrain::detail::shaders3 {
 
-// How a camera or a light sees the scene.
-inline constexpr const char* kView = R"(#version 330 core
+// Sizes that the shaders and the painter have to agree on.
+inline constexpr int kMapSize = 512;       // side of a shadow map [texels]
+inline constexpr int kBodiesPerRow = 512;  // of the table of bodies
+inline constexpr int kMostCuts = 8;
+inline constexpr int kMostLights = 9;  // in one sub-frame, the sun among them
+
+// The view of a camera or of a light, with which all shaders of bodies and of light begin.
+inline constexpr const char* kView = R"(
 uniform mat3 axes;         // rows: right, up, towards the viewer
 uniform vec3 shift;        // the scene's middle, seen from the eye along these axes
 uniform vec2 half_size;    // of the picture; perspective: at depth 1
@@ -51,7 +57,7 @@ void main() {
 }
 )";
 
-// A ball that no cut touches.
+// Draws a ball that no cut touches.
 inline constexpr const char* kBallFragmentShader = R"(
 flat in vec3 a;
 flat in float radius, id;
@@ -68,7 +74,7 @@ void main() {
 }
 )";
 
-// Its shadow; lights see along parallel lines.
+// Draws the shadow of a ball that no cut touches. Lights see along parallel lines.
 inline constexpr const char* kBallShadowVertexShader = R"(
 layout(location = 0) in vec4 from_radius;
 out vec2 local;
@@ -87,12 +93,13 @@ void main() {
 }
 )";
 
-// A tube, or a ball that is cut: the ray's stretch inside the hull of two balls, then inside the
-// half-spaces that the cuts leave. With SHADOW the middle of the stretch, without it its beginning.
+// Draws a tube, or a ball that is cut: the ray's stretch inside the hull of two balls, then inside
+// the half-spaces that the cuts leave. With SHADOW the depth is that of the stretch's middle,
+// without it that of its beginning.
 inline constexpr const char* kBodyFragmentShader = R"(
 flat in vec3 a, b;
 flat in float radius, id;
-uniform vec4 cuts[8];
+uniform vec4 cuts[MOST_CUTS];
 uniform int cut_count;
 #ifndef SHADOW
 out float seen;
@@ -148,6 +155,7 @@ void main() {
 }
 )";
 
+// Draws a line of constant width in the picture.
 inline constexpr const char* kLineVertexShader = R"(
 layout(location = 0) in vec4 from_radius;
 layout(location = 1) in vec4 to_id;
@@ -182,16 +190,17 @@ void main() {
 }
 )";
 
+// Finds again the point that is seen through a pixel, and adds up the light on it.
 inline constexpr const char* kLightFragmentShader = R"(
 uniform sampler2D ids, depths;     // what is seen through each pixel
 uniform sampler2D bodies;          // three texels a body: end and radius, end and half a line's
                                    // pixels, colour and whether it is lit
 uniform sampler2D panes;           // plane, four sides, colour; a row a pane, the farthest first
 uniform int pane_count;
-uniform sampler2D shadows;         // maps of 512 x 512 texels side by side
-uniform int lights;                // the first is the sun, at most 9
-uniform vec3 light_axes[27];       // right, up, towards the light
-uniform float strength[9];
+uniform sampler2D shadows;         // square maps side by side
+uniform int lights;                // the first is the sun
+uniform vec3 light_axes[3 * MOST_LIGHTS];  // right, up, towards the light
+uniform float strength[MOST_LIGHTS];
 uniform float map_reach;
 uniform vec2 map_jitter;
 uniform vec4 ground;               // normal, height
@@ -202,27 +211,28 @@ uniform float weight;
 out vec4 colour;
 
 const float kAmbient = 0.09;   // light that no shadow takes away
-const float kShine = 0.16;     // of the sun's reflection
+const float kShine = 0.16;     // strength of the sun's reflection (Blinn, SIGGRAPH 1977)
+const float kSharpness = 48.0; // and its exponent
 const float kGround = 0.75;    // how black the floor's deepest shadow is
-// The floor sees only half of the sky: a haze that reaches far beyond the bodies would show where
-// the picture ends.
+// The floor takes only half of the sky's light: a haze that reaches far beyond the bodies would
+// show where the picture ends.
 const float kGroundSky = 0.5;
 const float kCutFace = 0.70;   // brightness of the faces that cuts leave
 
-// Where light k sees p: texels of its map, and depth. Behind the map's range something may still be in
-// the way, therefore depth is kept inside.
+// Where light k sees p: texels of its map, and depth. Behind the map's range something may still be
+// in the way, therefore depth is kept inside.
 vec3 seen_by(int k, vec3 p) {
   vec3 q = vec3(dot(light_axes[3 * k], p), dot(light_axes[3 * k + 1], p),
                 -dot(light_axes[3 * k + 2], p)) / map_reach;
-  q.xy = 512.0 * (0.5 * (q.xy + map_jitter) + 0.5);
+  q.xy = float(MAP_SIZE) * (0.5 * (q.xy + map_jitter) + 0.5);
   return vec3(q.xy, min(0.5 * q.z + 0.5, 0.99999));
 }
 
-// Whether light k reaches p: outside the map nothing is in the way. Fetching texels costs half of what
-// the texture unit's comparison does in software.
+// Tells whether light k reaches a point: outside the map nothing is in the way. Fetching texels
+// costs half of what the texture unit's comparison does in software.
 float reaches(int k, ivec2 texel, float depth) {
-  bool outside = min(texel.x, texel.y) < 0 || max(texel.x, texel.y) > 511;
-  texel = clamp(texel, 0, 511) + ivec2(512 * k, 0);
+  bool outside = min(texel.x, texel.y) < 0 || max(texel.x, texel.y) >= MAP_SIZE;
+  texel = clamp(texel, 0, MAP_SIZE - 1) + ivec2(MAP_SIZE * k, 0);
   return outside || depth <= texelFetch(shadows, texel, 0).r ? 1.0 : 0.0;
 }
 
@@ -242,7 +252,9 @@ float sun_light(vec3 p) {
   return mix(both.x, both.y, part.x);
 }
 
-vec4 body(int id, int part) { return texelFetch(bodies, ivec2(id % 512 * 3 + part, id / 512), 0); }
+vec4 body(int id, int part) {
+  return texelFetch(bodies, ivec2(id % BODIES_PER_ROW * 3 + part, id / BODIES_PER_ROW), 0);
+}
 
 // How much nearer than a line a plane that holds it may be at this pixel, which lies `aside` of the
 // line's axis at most; bodies have no width aside.
@@ -283,6 +295,7 @@ void main() {
     vec3 along = body(id, 1).xyz - a.xyz;
     radius = a.w;
     n = p - a.xyz - clamp(dot(p - a.xyz, along) / max(dot(along, along), 1e-12), 0.0, 1.0) * along;
+    // Cuts leave flat faces inside the body's surface; the surface itself is found up to rounding.
     flat_face = length(n) < 0.998 * radius - 1e-6;
     n = normalize(n);
   }
@@ -293,7 +306,8 @@ void main() {
     all = strength[0] * max(dot(n, light_axes[2]), 0.0);
     float sun = sun_light(p);
     light = all * sun;
-    if (all > 0.0) shine = sun * pow(max(dot(n, normalize(light_axes[2] + to_eye)), 0.0), 48.0);
+    vec3 half_way = normalize(light_axes[2] + to_eye);
+    if (all > 0.0) shine = sun * pow(max(dot(n, half_way), 0.0), kSharpness);
     for (int k = 1; k < lights; ++k) {
       float full = strength[k] * max(dot(n, light_axes[3 * k + 2]), 0.0);
       if (on_ground) full *= kGroundSky;
@@ -319,6 +333,7 @@ void main() {
         float other = texelFetch(ids, beside, 0).r;
         float behind = range.x + texelFetch(depths, beside, 0).r * range.y - t;
         if (other < 0.0) behind = 1e9;
+        // A step in depth of less than a tenth of the radius has no outline.
         if (other != seen) step = max(step, smoothstep(0.1, 0.6, behind / radius));
       }
       sum.rgb = mix(sum.rgb, outline.rgb, outline.a * step);
@@ -340,7 +355,7 @@ void main() {
 }
 )";
 
-// From light to sRGB, on the background.
+// Turns the sum of light into sRGB, on the background.
 inline constexpr const char* kDevelopFragmentShader = R"(#version 330 core
 uniform sampler2D sum;
 uniform vec4 background;

@@ -27,6 +27,7 @@ static_assert(sizeof(Body) == 32);
 /// Least distance of a body before the eye of a perspective view.
 inline constexpr float kLeastDepth = 1e-5F;
 
+/// A camera or a light, as the shaders need it.
 struct View {
   Eigen::Matrix3f axes = Eigen::Matrix3f::Identity();  ///< rows: right, up, towards the viewer
   Vec3f shift = Vec3f::Zero();      ///< the origin, seen from the eye along these axes
@@ -42,15 +43,15 @@ struct View {
   }
 };
 
-/// What a view needs to draw.
+/// The bodies that a view has to draw.
 struct Drawn {
   std::vector<Body> balls;   ///< whole
   std::vector<Body> others;  ///< cut balls, tubes
 };
 
 /// Leaves out balls that are wholly hidden behind nearer ones: most of a packing, for every view.
-/// On a grid of tiles, a ball hides whatever lies behind it in the tiles that it covers entirely;
-/// exact, the picture is the same without.
+/// On a grid of tiles, a ball hides whatever lies behind it in the tiles that it covers entirely.
+/// The picture is exactly the same without.
 class Sieve {
  public:
   /// Adds to `drawn` the balls that are not hidden.

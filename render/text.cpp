@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -346,8 +347,7 @@ class Typesetter {
       const bool super = text_[at_++] == '^';
       x_ = super ? start + overhang : start;
       const double shift = super ? kSuperRise : both ? -kSubDropBelowSuper : -kSubDrop;
-      nucleus({std::max(kScript * style.size, 0.5 * style.size), style.rise + shift * style.size,
-               style.depth + 1});
+      nucleus({kScript * style.size, style.rise + shift * style.size, style.depth + 1});
       end = std::max(end, x_ + overhang_);
     }
     x_ = end + kScriptSpace * style.size;
@@ -355,7 +355,7 @@ class Typesetter {
     before_ = Role::ordinary;
   }
 
-  // Looks ahead: does the other script follow the first one?
+  // Tells whether the other script follows the first one.
   bool has_both_scripts() const {
     std::size_t k = at_ + 1;
     if (k < text_.size() && text_[k] == '{') {

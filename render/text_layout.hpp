@@ -45,7 +45,7 @@ struct Mask {
 /// @param scale pixels per point
 Mask rasterise(const Label& label, double scale);
 
-/// A face of its own for Cairo, which changes the state of the faces it is given. Lives for ever.
+/// A face for Cairo alone, which changes the state of the faces it is given. It lives for ever.
 FT_FaceRec_* cairo_face(Font font);
 
 }  // namespace lagrain::detail

@@ -39,8 +39,8 @@ std::string quoted(const std::filesystem::path& path) {
   return out + "'";
 }
 
-// Writing to an encoder that has died raises SIGPIPE, which would end the program. Holds the signal
-// back on this thread, and takes away the one that we caused.
+// Holds SIGPIPE back on this thread, and takes away the one that we caused: writing to an encoder
+// that has died raises it, and it would end the program.
 class NoBrokenPipe {
  public:
   NoBrokenPipe() {
@@ -111,6 +111,7 @@ struct VideoWriter::State {
       if (error) throw SceneError(folder.string() + ": cannot be written: " + error.message());
       return;
     }
+    // Constant quality, so high that compression is not seen.
     const std::string codec = path.extension() == ".mp4"
                                   ? "-c:v libx264 -crf 18 -preset medium -movflags +faststart"
                                   : "-c:v libvpx-vp9 -crf 24 -b:v 0 -row-mt 1";
@@ -140,7 +141,7 @@ VideoWriter::VideoWriter(const std::filesystem::path& path, int fps)
   state_->log += ".log";
   state_->folder = path.parent_path() / path.stem();
   state_->folder += "_frames";
-  // Fails here, before hours of frames.
+  // A folder that cannot be written fails here, before hours of frames.
   detail::write_whole(state_->log, "");
   std::error_code ignored;
   std::filesystem::remove(state_->log, ignored);

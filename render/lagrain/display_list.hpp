@@ -143,9 +143,8 @@ class Panel {
   Vec<2> point(const Vec<2>& world) const { return origin_ + scale_ * world; }  ///< [m] -> [pt]
   double length(double metres) const { return scale_ * metres; }                ///< [m] -> [pt]
   double scale() const { return scale_; }                                       ///< [pt/m]
-  const Box& box() const {
-    return box_;
-  }  ///< image of the world rectangle [pt], for clips and frames
+  /// Image of the world rectangle [pt], for clips and frames.
+  const Box& box() const { return box_; }
 
  private:
   double scale_;

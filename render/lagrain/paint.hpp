@@ -39,7 +39,7 @@ Image paint_scene3(const Scene3& scene, int width, int height, double dpi = 72);
 /// Paints a scene for a place on a page: add the result to a display list, labels on top of it by
 /// View3 with the same box.
 /// @param box rectangle on the page that the picture fills [pt]
-/// @throws as above
+/// @throws as the function above
 Picture paint_scene3(const Scene3& scene, const Box& box, double dpi = 300);
 
 /// Paints the list into a PNG file that knows its resolution.

@@ -89,8 +89,8 @@ Eigen::Matrix3d page_axes(const Camera& camera);
 /// @param field_of_view vertical angle of a perspective picture [rad]; 0: parallel lines of sight
 /// @param margin        left free on each side, as a share of the picture's size [-]
 /// @pre the box is not a point; aspect > 0; 0 <= field_of_view < pi; 0 <= margin < 0.5
-Camera look(const Box3& box, const Vec<3>& direction, const Vec<3>& up = {0, 0, 1},
-            double aspect = 1, double field_of_view = 0, double margin = 0.03);
+Camera camera_framing(const Box3& box, const Vec<3>& direction, const Vec<3>& up = {0, 0, 1},
+                      double aspect = 1, double field_of_view = 0, double margin = 0.03);
 
 /// A sun, which casts shadows with soft borders, and a sky above, which reaches into gaps the less
 /// the deeper they are.
@@ -107,8 +107,8 @@ struct Lights {
 /// lens.
 Lights over_the_shoulder(const Camera& camera);
 
-/// Pictures averaged into one, each with another sun, other lights of the sky, and pixels moved by
-/// a fraction: what costs time, and what smooths edges and shadows.
+/// Numbers of sub-frames: pictures that are averaged into one, each with another sun, other lights
+/// of the sky, and pixels moved by a fraction. They smooth edges and shadows, and cost time.
 inline constexpr int kPreviewSubframes = 1;
 inline constexpr int kVideoSubframes = 6;
 inline constexpr int kPrintSubframes = 24;

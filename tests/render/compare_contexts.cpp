@@ -1,6 +1,6 @@
-// Are the pictures of all kinds of OpenGL contexts the same bits? A process has one context, so each
-// kind paints in a process of its own. A program beside the other tests: fork() comes before the
-// first picture, whose painter starts threads.
+// Are the pictures of all kinds of OpenGL contexts the same bits? A process has one context, so
+// each kind paints in a process of its own. This is a program of its own because it has to fork()
+// before the first picture, whose painter starts threads.
 
 #include "context.hpp"
 #include "support.hpp"

@@ -82,7 +82,7 @@ Scene3 heap() {
   one.floor = Floor{};
   one.panes.push_back({{{{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}}}});
   one.cuts.push_back({{1, -1, 0}, 0.5});
-  one.camera = look(box, {-0.6, 1, -0.5}, {0, 0, 1}, 1, 0.5);
+  one.camera = camera_framing(box, {-0.6, 1, -0.5}, {0, 0, 1}, 1, 0.5);
   one.subframes = 3;
   return one;
 }

@@ -396,7 +396,7 @@ TEST_SUITE("scene3") {
         for (const Vec<3>& direction :
              {Vec<3>(0, 1, 0), Vec<3>(1, 2, -1), Vec<3>(0, 0, 1), Vec<3>(0, 0, -1)}) {
           const Vec<3> up = direction.head<2>().norm() > 0 ? Vec<3>(0, 0, 1) : Vec<3>(0, 1, 0);
-          const Camera camera = look(box, direction, up, aspect, field, 0.05);
+          const Camera camera = camera_framing(box, direction, up, aspect, field, 0.05);
           const View3 view(camera, {{0, 0}, {100 * aspect, 100}});
 
           Vec<2> low(kNothing, kNothing), high = -low;
@@ -433,7 +433,7 @@ TEST_SUITE("scene3") {
   TEST_CASE("seen from below, the page turns and the light comes from the viewer's side") {
     const Box3 box{{0, 0, 0}, {1, 1, 1}};
     Scene3 one;
-    one.camera = look(box, {0, 0, 1}, {0, 1, 0});
+    one.camera = camera_framing(box, {0, 0, 1}, {0, 1, 0});
     one.lights = over_the_shoulder(one.camera);
     one.balls.push_back({{0.5, 0.5, 0.3}, 0.3, kRed});
     one.subframes = 1;
@@ -496,7 +496,7 @@ TEST_SUITE("scene3") {
     bad = good;
     bad.lights.sun.setZero();
     CHECK_THROWS_AS(paint_scene3(bad, 10, 10), ContractError);
-    CHECK_THROWS_AS(look({}, {0, 1, 0}), ContractError);
+    CHECK_THROWS_AS(camera_framing({}, {0, 1, 0}), ContractError);
     CHECK(covered(good, 101) > 0);  // the painter is as good as before
   }
 
