@@ -75,7 +75,7 @@ Sites<Dim> packed_sites(int count) {
   Columns<Dim> x(Dim, count);
   for (int i = 0; i < count; ++i) x.col(i) = grains[static_cast<std::size_t>(i)].position;
   const std::vector<int> order = spatial_order<Dim>(x);
-  Sites<Dim> sites{x(Eigen::all, order), Eigen::VectorXd(count)};
+  Sites<Dim> sites{x(Eigen::seqN(0, Eigen::fix<Dim>), order), Eigen::VectorXd(count)};
   for (int i = 0; i < count; ++i) {
     const double r = grains[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])].radius;
     sites.weight[i] = r * r;
