@@ -200,7 +200,7 @@ FigureResult draw_figure9(const FigureOptions& options) {
     jobs.push_back({name, scene});
   }
   // Figures 6 and 7 have run these already when all figures are drawn.
-  for (const std::size_t k : {0, 3, 4}) {
+  for (const std::size_t k : {0U, 3U, 4U}) {
     const double seconds = options.quick ? 1 : k == 0 ? 4 : 2;
     jobs.push_back({"shaken", shaken(jobs[k].scene, seconds)});
   }
