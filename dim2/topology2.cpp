@@ -1,11 +1,14 @@
 #include <lagrain/topology2.hpp>
 
+#include <limits>
+
 namespace lagrain {
 
 void Topology2::clear(int vertices) {
   triangles_.clear();
   free_.clear();
   corner_of_.assign(index(vertices + 1), kNone);
+  epoch_ = 1;
 }
 
 int Topology2::degree(int v, int limit) const {
@@ -23,6 +26,46 @@ bool Topology2::on_hull(int v) const {
   bool found = false;
   for_each_corner(v, [&](int corner) { found = found || source(corner) == kInfinite; });
   return found;
+}
+
+void Topology2::clear_marks() {
+  if (epoch_ == std::numeric_limits<int>::max()) {
+    for (Triangle& triangle : triangles_) triangle.mark = 0;
+    epoch_ = 0;
+  }
+  ++epoch_;
+}
+
+void Topology2::renumber(std::span<const int> order) {
+  std::vector<int> place(triangles_.size(), kNone);
+  for (std::size_t k = 0; k < order.size(); ++k) place[index(order[k])] = static_cast<int>(k);
+  std::vector<Triangle> triangles(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    triangles[k] = triangles_[index(order[k])];
+    triangles[k].mark = triangles[k].flags = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      int& twin = triangles[k].twin[i];
+      twin = 4 * place[index(twin >> 2)] + (twin & 3);
+      set_corner_of(triangles[k].vertex[i], static_cast<int>(4 * k + i));
+    }
+  }
+  triangles_.swap(triangles);
+  free_.clear();
+}
+
+void Topology2::start_from(const std::array<int, 3>& triangle) {
+  const auto [a, b, c] = triangle;
+  add(a, b, c);
+  // Triangle k + 1 lies beyond corner k, and has infinity at its own corner 0.
+  add(kInfinite, c, b);
+  add(kInfinite, a, c);
+  add(kInfinite, b, a);
+  for (int k = 0; k < 3; ++k) {
+    const int here = 4 * (k + 1), following = 4 * ((k + 1) % 3 + 1);
+    link(k, here);
+    // They share the edge from infinity to the corner that is neither k nor k + 1.
+    link(here + 2, following + 1);
+  }
 }
 
 int Topology2::add(int a, int b, int c) {
@@ -88,7 +131,7 @@ int Topology2::remove_degree3(int v) {
   return first >> 2;
 }
 
-void Topology2::star(int v, std::span<const int> hole, std::span<const int> rim) {
+void Topology2::fill_from(int v, std::span<const int> hole, std::span<const int> rim) {
   rim_.clear();
   for (const int corner : rim) rim_.push_back({source(corner), target(corner), twin(corner)});
   for (const int triangle : hole) release(triangle);

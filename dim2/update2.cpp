@@ -1,19 +1,19 @@
 #include <lagrain/triangulation2.hpp>
 
-#include "cover.hpp"
+#include "updates.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace lagrain {
 
 // ---- Decisions ---------------------------------------------------------------------------------
 
-/// True for infinite triangles and for strictly counter-clockwise ones.
+/// Returns true for infinite triangles and for strictly counter-clockwise ones.
 bool Triangulation<2>::positive(const Site2* places, int a, int b, int c) const {
   return (a | b | c) < 0 || orientation(places[a], places[b], places[c]) > 0;
 }
 
+/// Returns true if the triangle cannot belong to T because of the site; see predicates2.hpp.
 bool Triangulation<2>::conflict(int triangle, int site) const {
   const auto [a, b, c] = corners_of(triangle);
   if ((a | b | c) >= 0) return in_conflict(sites_.data(), a, b, c, site);
@@ -22,13 +22,15 @@ bool Triangulation<2>::conflict(int triangle, int site) const {
   return in_conflict_beyond(sites_.data(), a, b, site);
 }
 
-/// A hull edge always is: no finite site beyond it belongs to its two triangles.
+/// Returns true if neither of the two triangles at the edge opposite to a corner is in conflict
+/// with the apex of the other. A hull edge is always regular: only one of its apices is finite.
 bool Triangulation<2>::locally_regular(int corner) const {
   const int apex = topology_.vertex(corner), opposite = topology_.vertex(topology_.twin(corner));
   return (apex | opposite) < 0 || !conflict(corner >> 2, opposite);
 }
 
-/// A closed chain that never turns right and has one lexicographic minimum is a convex polygon.
+/// Returns true if the hull has one lexicographic minimum: a closed chain that never turns right
+/// and has one is a convex polygon.
 bool Triangulation<2>::hull_goes_round_once() const {
   const auto before = [&](int i, int j) {
     const Site2 &a = sites_[index(i)], &b = sites_[index(j)];
@@ -43,37 +45,29 @@ bool Triangulation<2>::hull_goes_round_once() const {
   return minima == 1;
 }
 
-bool Triangulation<2>::tiny() const {
-  return dimension_ < 2 || present_ - static_cast<int>(hidden_.size()) < kTiny;
+/// Returns a visible site that shares an edge with a visible one, or with infinity.
+int Triangulation<2>::finite_neighbour(int site) const {
+  const int corner = topology_.corner_of(site);
+  return topology_.source(corner) >= 0 ? topology_.source(corner) : topology_.target(corner);
 }
 
-int Triangulation<2>::next_epoch() {
-  if (epoch_ == std::numeric_limits<int>::max()) {
-    std::fill(site_epoch_.begin(), site_epoch_.end(), 0);
-    for (int t = 0; t < topology_.slots(); ++t) topology_.set_mark(t, 0);
-    epoch_ = 0;
-  }
-  return ++epoch_;
-}
-
-/// Notes that a present site has no triangle; `hint` is a visible site near it. A hint that is
-/// hidden later leads on to its own hint, and so on without a cycle.
-void Triangulation<2>::hide(int site, int hint) {
-  topology_.set_corner_of(site, -2 - hint);
-  hidden_.push_back(site);
+/// Lists the finite edges from nothing, auxiliary sites left out.
+void Triangulation<2>::find_edges(EdgeList& list) const {
+  list.find(size_, [&](auto&& f) {
+    for (int t = 0; t < topology_.slots(); ++t) {
+      const auto v = topology_.vertices(t);
+      // An edge runs once each way; negative vertices (infinite, or of a dead slot) drop out, and
+      // so do auxiliary sites, whose ids are the highest.
+      if (v[0] >= 0 && v[0] < v[1] && v[1] < size_) f(v[0], v[1]);
+      if (v[1] >= 0 && v[1] < v[2] && v[2] < size_) f(v[1], v[2]);
+      if (v[2] >= 0 && v[2] < v[0] && v[0] < size_) f(v[2], v[0]);
+    }
+  });
 }
 
 // ---- Flips -------------------------------------------------------------------------------------
 
-void Triangulation<2>::push(int corner) {
-  corner = std::min(corner, topology_.twin(corner));
-  if (!topology_.exchange_flag(corner, true)) queue_.push_back(corner);
-}
-
-void Triangulation<2>::push_triangle(int triangle) {
-  for (int i = 0; i < 3; ++i) push(4 * triangle + i);
-}
-
+/// Replaces the edge opposite to a corner by the other diagonal of its two triangles.
 void Triangulation<2>::flip(int corner) {
   edges_.note_gone(topology_.source(corner), topology_.target(corner));
   const int other = topology_.flip(corner);
@@ -92,46 +86,27 @@ int Triangulation<2>::take_out_degree3(int site) {
   return left;
 }
 
-/// Flips until the queue is empty; edges that cannot be flipped end in stuck_.
-/// @return false if the budget is spent, which means that T was no triangulation
-bool Triangulation<2>::drain() {
-  while (!queue_.empty()) {
-    const int corner = queue_.back();
-    queue_.pop_back();
-    topology_.exchange_flag(corner, false);
-    if (!topology_.alive(corner >> 2) || locally_regular(corner)) continue;
-    if (!resolve(corner)) stuck_.push_back(corner);
-    if (--budget_ < 0) return false;
+/// Takes out the reflex end of an edge that is not regular and cannot be flipped.
+///
+/// Let a, b be the ends of the edge, c and d its apices, and a the reflex end. Then a lies in the
+/// triangle b, c, d, and, as the edge is not regular, the lifted a lies above the plane of the
+/// lifted b, c, d: site a is hidden for good.
+/// @return false if T was no triangulation
+bool Triangulation<2>::unstick(int corner) {
+  const int site = reflex_end(corner);
+  const int hint = finite_neighbour(site);
+  touched_.clear();
+  if (!remove_by_flips(site, sites_.data())) return false;
+  hide(site, hint);
+  ++report_.unstuck;
+  for (const int triangle : touched_) {
+    if (topology_.alive(triangle)) push_simplex(triangle);
   }
   return true;
 }
 
-/// Drains the queue and takes out the reflex ends of stuck edges until T is locally regular.
-///
-/// Why that is right: edge (a, b) has the apices c and d, and a is reflex, so a lies in the
-/// triangle b, c, d; the edge is not regular, so a lies above the plane of b, c, d: it is hidden
-/// for good.
-bool Triangulation<2>::settle() {
-  for (;;) {
-    if (!drain()) return false;
-    if (stuck_.empty()) return true;
-    const int corner = stuck_.back();
-    stuck_.pop_back();
-    if (!topology_.alive(corner >> 2) || locally_regular(corner) || resolve(corner)) continue;
-    const int site = reflex_end(corner);
-    const int hint = finite_neighbour(site);
-    touched_.clear();
-    if (!remove_by_flips(site, sites_.data())) return false;
-    hide(site, hint);
-    ++report_.unstuck;
-    for (const int triangle : touched_) {
-      if (topology_.alive(triangle)) push_triangle(triangle);
-    }
-  }
-}
-
-/// The finite end of an edge at which its two triangles together turn by 180 degrees or more, or
-/// -1.
+/// Returns the finite end of an edge at which its two triangles together turn by 180 degrees or
+/// more, or -1 if there is none.
 int Triangulation<2>::reflex_end(int corner) const {
   const int c = topology_.vertex(corner), d = topology_.vertex(topology_.twin(corner));
   const int a = topology_.source(corner), b = topology_.target(corner);
@@ -140,8 +115,10 @@ int Triangulation<2>::reflex_end(int corner) const {
   return -1;
 }
 
-/// Makes an edge that is not locally regular go away: 2-2, 3-1, or flat 4-2. Only finite triangles
-/// have to come out positive, infinite ones may always be made.
+/// Makes an edge that is not locally regular go away, and puts the edges around on the queue. The
+/// flip is 2-2, or 3-1 where the reflex end has degree three, or 4-2 where it has degree four and
+/// lies between the apices. Only finite triangles have to come out positive.
+/// @return false if none of these flips will do
 bool Triangulation<2>::resolve(int corner) {
   const int site = reflex_end(corner);
   if (site < 0) {
@@ -164,22 +141,18 @@ bool Triangulation<2>::resolve(int corner) {
   const int hint = finite_neighbour(site);
   const int left = take_out_degree3(site);
   hide(site, hint);
-  push_triangle(left);
+  push_simplex(left);
   if (degree == 4) {
-    for (int i = 0; i < 3; ++i) push_triangle(topology_.twin(4 * left + i) >> 2);
+    for (int i = 0; i < 3; ++i) push_simplex(topology_.twin(4 * left + i) >> 2);
   }
   return true;
 }
 
-int Triangulation<2>::finite_neighbour(int site) const {
-  const int corner = topology_.corner_of(site);
-  return topology_.source(corner) >= 0 ? topology_.source(corner) : topology_.target(corner);
-}
-
+/// Flips until T is regular, given that all triangles are positive.
+/// @param moved  T is regular but for the edges at these sites and at the triangles in touched_
+/// @param sweep  whether to look at all edges instead, in the order in which they lie in memory
 bool Triangulation<2>::flip_to_regular(std::span<const int> moved, bool sweep) {
-  queue_.clear();
-  stuck_.clear();
-  budget_ = 64 * static_cast<std::int64_t>(topology_.slots()) + 10000;
+  start_flips();
   if (sweep) {
     for (int t = 0; t < topology_.slots(); ++t) {
       if (!topology_.alive(t)) continue;
@@ -192,7 +165,7 @@ bool Triangulation<2>::flip_to_regular(std::span<const int> moved, bool sweep) {
     }
   } else {
     for (const int triangle : touched_) {
-      if (topology_.alive(triangle)) push_triangle(triangle);
+      if (topology_.alive(triangle)) push_simplex(triangle);
     }
     for (const int site : moved) {
       if (topology_.corner_of(site) < 0) continue;
@@ -206,16 +179,30 @@ bool Triangulation<2>::flip_to_regular(std::span<const int> moved, bool sweep) {
   return settle() && (!hull_touched_ || hull_goes_round_once());
 }
 
+/// Makes T regular after the sites in moved_ have moved.
+bool Triangulation<2>::repair() {
+  // From this share of moved sites on, one sweep over all triangles costs less than one star after
+  // the other, which overlap and lie scattered in memory. Measured on the jittered lattices of
+  // tests/bench/bench_update.cpp, with 1,000 to 50,000 discs: the two cost the same at 1/8, and the
+  // sweep a tenth to a fifth less at 1/4. With twice the share an update of up to half of the sites
+  // takes up to twice as long; with half the share nothing changes. No result depends on it.
+  constexpr std::size_t kSweptShare = 4;
+  const bool sweep = moved_.size() > index(size_) / kSweptShare;
+  return extract_inverted(moved_, sweep) && flip_to_regular(moved_, sweep);
+}
+
 // ---- Taking out --------------------------------------------------------------------------------
 
-/// Takes a site out by flips of its own edges. In any triangulation with a convex hull this
-/// succeeds: an edge of a site inside can be flipped until three are left (of the ears of its link
-/// at least two do not hold it; four with the site on a diagonal are the flat case), and a site on
-/// the hull loses the ears of its fan and then the fan itself. Adds the triangles it made to
-/// touched_.
+/// Takes a site out by flips of its own edges, and adds the triangles that it made to touched_.
+///
+/// In any triangulation with a convex hull this succeeds. An edge of a site inside can be flipped
+/// until three are left: of the ears of its link at least two do not hold the site. Four with the
+/// site on a diagonal are the flat case. A site on the hull loses the ears of its fan, and then the
+/// fan itself.
 /// @return false if the rest would be flat, or T is no triangulation; T is then half done
 bool Triangulation<2>::remove_by_flips(int site, const Site2* places) {
-  // Entry k: the edge to ring_[k], and the corner at `site` in the triangle on its left.
+  // Entry k stands for the edge to ring_[k]; spokes_[k] is the corner at `site` in the triangle on
+  // the left of this edge.
   ring_.clear();
   spokes_.clear();
   topology_.for_each_corner(site, [&](int corner) {
@@ -234,8 +221,8 @@ bool Triangulation<2>::remove_by_flips(int site, const Site2* places) {
     ring_.erase(ring_.begin() + static_cast<std::ptrdiff_t>(k));
     spokes_.erase(spokes_.begin() + static_cast<std::ptrdiff_t>(k));
   };
-  /// First k whose neighbours p, u, q make an ear beyond u; the site lies on the given side of p,
-  /// q.
+  // Returns the first k whose neighbours p, u, q make an ear beyond u, with the site on the given
+  // side of p, q.
   const auto find_ear = [&](int side) {
     const std::size_t n = ring_.size();
     std::size_t k = 0;
@@ -277,6 +264,11 @@ bool Triangulation<2>::remove_by_flips(int site, const Site2* places) {
   return true;
 }
 
+/// Takes a visible site out of a regular T, and makes it regular again.
+bool Triangulation<2>::take_out_at_rest(int site) {
+  return remove_by_flips(site, sites_.data()) && flip_to_regular({}, false);
+}
+
 /// Makes the hull convex again around the triangles in touched_ from `first` on.
 void Triangulation<2>::close_hull(std::size_t first, const Site2* places) {
   for (std::size_t k = first; k < touched_.size(); ++k) {
@@ -298,8 +290,9 @@ void Triangulation<2>::close_hull(std::size_t first, const Site2* places) {
   }
 }
 
-/// An inverted triangle at the hull whose inner vertex crossed the hull edge outwards: that vertex
-/// joins the hull when the triangle is dropped. Cheap, and the usual case along a flat floor.
+/// Returns the corner of an inverted triangle whose vertex crossed the hull edge outwards, or
+/// kNone. That vertex joins the hull when the triangle is dropped, which is cheap, and the usual
+/// case along a flat floor.
 int Triangulation<2>::crossed_hull_edge(int triangle) const {
   int found = Topology2::kNone;
   for (int corner = 4 * triangle; corner < 4 * triangle + 3; ++corner) {
@@ -322,38 +315,38 @@ bool Triangulation<2>::extract_inverted(std::span<const int> moved, bool sweep) 
   touched_.clear();
   inverted_.clear();
   hull_touched_ = sweep;
-  const auto look = [&](int triangle) {
+  const auto list_if_inverted = [&](int triangle) {
     const auto [a, b, c] = corners_of(triangle);
     if (!positive(sites_.data(), a, b, c)) inverted_.push_back(triangle);
   };
   if (sweep) {
-    for (int t = 0; t < topology_.slots(); ++t) look(t);
+    for (int t = 0; t < topology_.slots(); ++t) list_if_inverted(t);
   } else {
-    const int epoch = next_epoch();
+    topology_.clear_marks();
     for (const int site : moved) {
       if (topology_.corner_of(site) < 0) continue;
       topology_.for_each_corner(site, [&](int corner) {
         if (topology_.source(corner) < 0) hull_touched_ = true;
         const int triangle = corner >> 2;
-        if (topology_.mark(triangle) == epoch) return;
-        topology_.set_mark(triangle, epoch);
-        look(triangle);
+        if (topology_.marked(triangle)) return;
+        topology_.set_mark(triangle);
+        list_if_inverted(triangle);
       });
     }
   }
 
-  /// What is left of inverted_, and the triangles made since.
-  const auto look_again = [&](std::size_t first) {
+  // Lists what is left of inverted_, and what is inverted of the triangles made since.
+  const auto list_again = [&](std::size_t first) {
     pending_.swap(inverted_);
     inverted_.clear();
-    const int epoch = next_epoch();
-    const auto look_once = [&](int triangle) {
-      if (!topology_.alive(triangle) || topology_.mark(triangle) == epoch) return;
-      topology_.set_mark(triangle, epoch);
-      look(triangle);
+    topology_.clear_marks();
+    const auto list_once = [&](int triangle) {
+      if (!topology_.alive(triangle) || topology_.marked(triangle)) return;
+      topology_.set_mark(triangle);
+      list_if_inverted(triangle);
     };
-    for (const int triangle : pending_) look_once(triangle);
-    for (std::size_t k = first; k < touched_.size(); ++k) look_once(touched_[k]);
+    for (const int triangle : pending_) list_once(triangle);
+    for (std::size_t k = first; k < touched_.size(); ++k) list_once(touched_[k]);
   };
 
   const auto take_out_cover = [&] {
@@ -393,13 +386,13 @@ bool Triangulation<2>::extract_inverted(std::span<const int> moved, bool sweep) 
       choose_cover(std::span<const int>(hard, inverted_.end()));
     }
     if (!take_out_cover()) return false;
-    look_again(first);
+    list_again(first);
   }
 }
 
-/// Moved sites at which the hull turns right by more than 90 degrees, or their neighbours along the
-/// hull. Such a hull may cross itself, and flips would not unfold it. (The measure may be rough: a
-/// hull that slips through fails the last test.)
+/// Adds to cover_ moved sites at which the hull turns right by more than 90 degrees, or their moved
+/// neighbours along the hull. Such a hull may cross itself, and flips would not unfold it. The
+/// measure may be rough, because a hull that slips through fails the last test.
 void Triangulation<2>::choose_folded() {
   topology_.for_each_corner(Topology2::kInfinite, [&](int corner) {
     const int last = topology_.source(corner), here = topology_.target(corner);
@@ -415,30 +408,10 @@ void Triangulation<2>::choose_folded() {
   });
 }
 
-/// Fills cover_ with moved sites, at least one in each of the triangles.
-void Triangulation<2>::choose_cover(std::span<const int> triangles) {
-  detail::choose_cover(
-      triangles, [&](int triangle) { return corners_of(triangle); },
-      [&](int id) { return moved_place(id); }, site_count_, cover_);
-}
-
 // ---- Putting in --------------------------------------------------------------------------------
 
-/// A visible site to start from, found along the hints.
-int Triangulation<2>::visible_from(int site) const {
-  int hint = site;
-  for (int step = 0; step < 64; ++step) {
-    const int note = topology_.corner_of(hint);
-    if (note >= 0) return hint;
-    if (note == Topology2::kNone || -2 - note >= size()) break;
-    hint = -2 - note;
-  }
-  const int corner = topology_.corner_of(Topology2::kInfinite);
-  return topology_.source(corner);
-}
-
-/// The triangle that holds the site, by a walk over edges that have it strictly beyond; infinite
-/// if it lies outside. The walk ends because T is regular.
+/// Finds the triangle that holds the site by a walk over edges that have it strictly beyond; the
+/// triangle is infinite if the site lies outside. The walk ends because T is regular.
 int Triangulation<2>::locate(int site, int hint) const {
   int triangle = topology_.corner_of(hint) >> 2;
   for (int corner = 4 * triangle; corner < 4 * triangle + 3; ++corner) {
@@ -464,65 +437,63 @@ int Triangulation<2>::locate(int site, int hint) const {
   return triangle;
 }
 
-/// Inserts a site that has no triangle, by starring the region in conflict with it, and hides the
-/// sites inside that region. False, and a fresh hint, if the site is hidden itself.
+/// Inserts a site that has no triangle in place of the triangles in conflict with it (Bowyer,
+/// Comput. J. 24 (1981) 162; Watson, ibid. 167), and hides the sites among them.
 /// @pre T is regular
+/// @return false if the site is hidden itself, which then has a fresh hint
 bool Triangulation<2>::insert_visible(int site) {
   const int start = locate(site, visible_from(site));
   if (!topology_.infinite(start) && !conflict(start, site)) {
     topology_.set_corner_of(site, -2 - topology_.vertex(4 * start));
     return false;
   }
-  const int epoch = next_epoch();
+  // Notes of sites: 2 on the rim of the hole, 1 inside it.
+  const auto note = [&](int id) -> int& { return site_note_[index(id)]; };
+  topology_.clear_marks();
+  topology_.set_mark(start);
   hole_.assign(1, start);
   rim_.clear();
-  topology_.set_mark(start, epoch);
   for (std::size_t k = 0; k < hole_.size(); ++k) {
     const int triangle = hole_[k];
     for (int corner = 4 * triangle; corner < 4 * triangle + 3; ++corner) {
       const int beyond = topology_.twin(corner) >> 2;
-      if (topology_.mark(beyond) == epoch) continue;
+      if (topology_.marked(beyond)) continue;
       if (conflict(beyond, site)) {
-        topology_.set_mark(beyond, epoch);
+        topology_.set_mark(beyond);
         hole_.push_back(beyond);
       } else {
         rim_.push_back(corner);
-        const int id = topology_.source(corner);
-        if (id >= 0) site_epoch_[index(id)] = epoch;
+        if (const int id = topology_.source(corner); id >= 0) note(id) = 2;
       }
     }
   }
   ring_.clear();
   for (const int triangle : hole_) {
-    for (const int id : corners_of(triangle)) {
-      if (id < 0 || site_epoch_[index(id)] == epoch) continue;
-      site_epoch_[index(id)] = epoch;
+    for (const int id : topology_.vertices(triangle)) {
+      if (id < 0 || note(id) != 0) continue;
+      note(id) = 1;
       ring_.push_back(id);
     }
     for (int corner = 4 * triangle; corner < 4 * triangle + 3; ++corner) {
       const int twin = topology_.twin(corner);
-      if (corner > twin || topology_.mark(twin >> 2) != epoch) continue;
+      if (corner > twin || !topology_.marked(twin >> 2)) continue;
       edges_.note_gone(topology_.source(corner), topology_.target(corner));
     }
   }
-  for (const int corner : rim_) edges_.note_made(site, topology_.source(corner));
-  topology_.star(site, hole_, rim_);
-  for (const int id : ring_) hide(id, site);
+  for (const int corner : rim_) {
+    const int id = topology_.source(corner);
+    edges_.note_made(site, id);
+    if (id >= 0) note(id) = 0;
+  }
+  topology_.fill_from(site, hole_, rim_);
+  for (const int id : ring_) {
+    note(id) = 0;
+    hide(id, site);
+  }
   last_ = site;
   return true;
 }
 
-/// Tries every hidden site. One pass is enough: an insertion only hides others.
-void Triangulation<2>::try_hidden() {
-  pending_.swap(hidden_);
-  hidden_.clear();
-  for (const int id : pending_) {
-    if (insert_visible(id)) {
-      ++report_.reinserted;
-    } else {
-      hidden_.push_back(id);
-    }
-  }
-}
+template class detail::MovingSites<2>;
 
 }  // namespace lagrain

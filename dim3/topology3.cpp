@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace lagrain {
 
@@ -14,7 +15,7 @@ void Topology3::clear(int vertices) {
   epoch_ = 1;
 }
 
-void Topology3::reserve_cells(std::size_t count) {
+void Topology3::reserve(std::size_t count) {
   cells_.reserve(count);
   mark_.reserve(count);
   flags_.reserve(count);
@@ -30,7 +31,7 @@ int Topology3::degree(int corner, int other, int limit) const {
   return count;
 }
 
-void Topology3::star(int v, std::vector<int>& corners) {
+void Topology3::star(int v, std::vector<int>& corners) const {
   clear_marks();
   corners.assign(1, corner_of(v));
   set_mark(corners[0] >> 2);
@@ -46,7 +47,7 @@ void Topology3::star(int v, std::vector<int>& corners) {
   }
 }
 
-void Topology3::clear_marks() {
+void Topology3::clear_marks() const {
   if (epoch_ == std::numeric_limits<int>::max()) {
     std::fill(mark_.begin(), mark_.end(), 0);
     epoch_ = 0;
@@ -70,6 +71,22 @@ void Topology3::renumber(std::span<const int> order) {
   mark_.assign(cells_.size(), 0);
   flags_.assign(cells_.size(), 0);
   free_.clear();
+}
+
+void Topology3::start_from(const Quad& quad) {
+  add(quad);
+  for (int i = 0; i < 4; ++i) {
+    Quad beyond = quad;
+    beyond[index(i)] = kInfinite;
+    // Seen from the other side of the facet.
+    std::swap(beyond[index(kFacet[i][0])], beyond[index(kFacet[i][1])]);
+    link(i, corner_at(add(beyond), kInfinite));
+  }
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < i; ++j) {
+      link(corner_at(1 + i, quad[index(j)]), corner_at(1 + j, quad[index(i)]));
+    }
+  }
 }
 
 void Topology3::set(int cell, const Quad& quad) {

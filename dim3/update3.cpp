@@ -1,15 +1,37 @@
 #include <lagrain/triangulation3.hpp>
 
-#include "cover.hpp"
+#include "updates.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace lagrain {
 
+namespace {
+
+// These numbers were measured on the jittered lattices of tests/bench/bench_update.cpp, with 1,000
+// to 20,000 spheres. None of them changes a result.
+
+/// From this share of moved sites on, one pass over all cells finds the stars of all of them sooner
+/// than one star after the other, which overlap and lie scattered in memory. The two cost the same
+/// at 1/64, and at 1/32 the pass saves a quarter to a third. With half or twice the number an
+/// update near these shares takes up to a third longer.
+constexpr std::size_t kSweptShare = 32;
+/// An update that has to take out more than this share of the sites builds T anew. A build is
+/// cheaper from a share of about 1/30 on; at 1/6 an update takes up to four times as long. With
+/// 1/12 that is two builds, with 1/3 five; only moves by half a radius and more get there.
+constexpr int kMostTakenOut = 6;
+/// Cavities that are wider than this many rings of stars are not tried; T is then built anew. Where
+/// the weights of 300 or 3,000 spheres changed at random, facets got stuck five times in 66
+/// updates, and any number from 1 to 8 gave the same counts and times.
+constexpr int kRings = 4;
+
+}  // namespace
+
 // ---- Decisions ---------------------------------------------------------------------------------
 
-/// Sign of a tetrahedron. An infinite one lies beyond its facet, as seen from the middle.
+/// Returns the sign of a tetrahedron. An infinite one is positive if it does not see the middle: it
+/// then lies beyond its facet.
 int Triangulation<3>::sign(const Quad& quad) const {
   std::array<const Site3*, 4> place;
   bool infinite = false;
@@ -21,6 +43,7 @@ int Triangulation<3>::sign(const Quad& quad) const {
   return infinite ? -side : side;
 }
 
+/// Returns true if the cell cannot belong to T because of the site; see predicates3.hpp.
 bool Triangulation<3>::conflict(int cell, int site) const {
   Quad v = topology_.vertices(cell);
   for (int i = 0; i < 4; ++i) {
@@ -32,23 +55,15 @@ bool Triangulation<3>::conflict(int cell, int site) const {
   return in_conflict(sites_.data(), v[0], v[1], v[2], v[3], site);
 }
 
-/// A hull facet always is: no finite site beyond it belongs to its two cells.
+/// Returns true if neither of the two cells at the facet opposite to a corner is in conflict with
+/// the apex of the other. A hull facet is always regular: only one of its apices is finite.
 bool Triangulation<3>::locally_regular(int corner) const {
   const int apex = topology_.vertex(corner), opposite = topology_.vertex(topology_.twin(corner));
   return (apex | opposite) < 0 || !conflict(corner >> 2, opposite);
 }
 
-bool Triangulation<3>::moved_place(int id) const {
-  if (id < 0) return false;
-  const Site3 &a = sites_[index(id)], &b = before_[index(id)];
-  return a.x != b.x || a.y != b.y || a.z != b.z;
-}
-
-bool Triangulation<3>::tiny() const {
-  return dimension_ < 3 || thin_ || present_ - static_cast<int>(hidden_.size()) < kTiny;
-}
-
-/// A point to see the hull from: the mean of the visible sites, auxiliary ones included.
+/// Chooses the point that the hull is seen from: the mean of the visible sites, auxiliary ones
+/// included.
 void Triangulation<3>::choose_middle() {
   // Where sums of coordinates overflow they are made of smaller shares.
   for (const double share : {1.0, 0x1p-64}) {
@@ -71,18 +86,20 @@ void Triangulation<3>::choose_middle() {
   }
 }
 
-/// The same for a triangulation at rest, whose hull the mean may miss by rounding only.
+/// Chooses the middle of a triangulation at rest, whose hull the mean may miss by rounding only.
+/// Such a T is thin.
 void Triangulation<3>::choose_middle_at_rest() {
   choose_middle();
   thin_ = dimension_ >= 0 && !sees_whole_hull();
 }
 
+/// Returns true if all infinite cells are positive.
 bool Triangulation<3>::sees_whole_hull() const {
   topology_.star(Topology3::kInfinite, star_);
   return std::all_of(star_.begin(), star_.end(), [&](int at) { return positive(at >> 2); });
 }
 
-/// Sign of the tetrahedron of a middle (see hull_goes_round_once) and three sites.
+/// Returns the sign of the tetrahedron of a middle (see hull_goes_round_once) and three sites.
 int Triangulation<3>::side_from(std::span<const Site3> middle, const Site3& a, const Site3& b,
                                 const Site3& c) {
   for (const Site3& point : middle) {
@@ -91,10 +108,13 @@ int Triangulation<3>::side_from(std::span<const Site3> middle, const Site3& a, c
   return 0;
 }
 
+/// Returns true if the hull goes round the middle once.
+///
 /// Infinite cells that are all positive cover the directions from the middle a whole number of
-/// times; so count those that hold one direction. It leads to a hull facet a b c: to a, from there
-/// an infinitesimal way towards b and a still smaller one towards c. So it meets no edge of another
-/// facet, and all signs are exact.
+/// times; so count those that hold one direction. The direction leads to a hull facet a b c: to a,
+/// from there an infinitesimal way towards b and a still smaller one towards c. So it meets no edge
+/// of another facet, and all signs are exact.
+/// @pre all infinite cells are positive
 /// @param middle  the point to see them from: the first of these, or, where it lies in a plane that
 ///                is asked about, an infinitesimal way from it towards the next
 bool Triangulation<3>::hull_goes_round_once(std::span<const Site3> middle) const {
@@ -120,7 +140,7 @@ bool Triangulation<3>::hull_goes_round_once(std::span<const Site3> middle) const
          }) == 1;
 }
 
-/// A visible site that shares an edge with a visible site.
+/// Returns a visible site that shares an edge with a visible one, or with infinity.
 int Triangulation<3>::finite_neighbour(int site) const {
   const int corner = topology_.corner_of(site);
   const auto& f = Topology3::kFacet[corner & 3];
@@ -146,20 +166,8 @@ void Triangulation<3>::collect_vertices(std::span<const int> corners,
 
 // ---- Where is a site? --------------------------------------------------------------------------
 
-/// A visible site to start from, found along the hints.
-int Triangulation<3>::visible_from(int site) const {
-  int hint = site;
-  for (int step = 0; step < 64; ++step) {
-    const int note = topology_.corner_of(hint);
-    if (note >= 0) return hint;
-    if (note == Topology3::kNone) break;
-    hint = -2 - note;
-  }
-  return finite_neighbour(Topology3::kInfinite);
-}
-
-/// The cell that holds the site, by a walk over facets that have it strictly beyond; infinite if it
-/// lies outside. The walk ends because T is regular.
+/// Finds the cell that holds the site by a walk over facets that have it strictly beyond; the cell
+/// is infinite if the site lies outside. The walk ends because T is regular.
 int Triangulation<3>::locate(int site, int hint) const {
   int cell = topology_.corner_of(hint) >> 2;
   if (topology_.infinite(cell)) {
@@ -184,15 +192,6 @@ int Triangulation<3>::locate(int site, int hint) const {
 
 // ---- Flips -------------------------------------------------------------------------------------
 
-void Triangulation<3>::push(int corner) {
-  corner = std::min(corner, topology_.twin(corner));
-  if (!topology_.exchange_flag(corner, true)) queue_.push_back(corner);
-}
-
-void Triangulation<3>::push_cell(int cell) {
-  for (int i = 0; i < 4; ++i) push(4 * cell + i);
-}
-
 /// Exchanges cells for others if all of these are positive.
 bool Triangulation<3>::exchange(std::span<const int> in, std::span<const Quad> out) {
   for (const Quad& quad : out) {
@@ -212,7 +211,7 @@ bool Triangulation<3>::exchange(std::span<const int> in, std::span<const Quad> o
   return true;
 }
 
-/// 2-3: the facet opposite to a corner gives way to the edge that joins the two apices.
+/// Flips 2-3: the facet opposite to a corner gives way to the edge that joins the two apices.
 bool Triangulation<3>::flip_facet(int corner) {
   const int twin = topology_.twin(corner);
   const int apex = topology_.vertex(corner), opposite = topology_.vertex(twin);
@@ -227,9 +226,9 @@ bool Triangulation<3>::flip_facet(int corner) {
   return true;
 }
 
-/// 3-2 or 4-4: the edge u v opposite to two corners of a cell gives way. With three cells round it,
-/// the facet of their other vertices takes its place; with four, whose other vertices go round p,
-/// w, q, x from `corner` and `other`, the edge p q does.
+/// Flips 3-2 or 4-4: the edge u v opposite to two corners of a cell gives way. With three cells
+/// round it, the facet of their other vertices takes its place; with four, whose other vertices go
+/// round p, w, q, x from `corner` and `other`, the edge p q does.
 bool Triangulation<3>::flip_edge(int corner, int other, int cells) {
   const auto count = static_cast<std::size_t>(cells);
   if (topology_.degree(corner, other, cells + 1) != cells) return false;
@@ -264,8 +263,9 @@ bool Triangulation<3>::flip_edge(int corner, int other, int cells) {
   return true;
 }
 
-/// 4-1: a finite vertex of the facet opposite to a corner that has no other cells than these two
-/// and their two common neighbours lies within the four other vertices: it is hidden now.
+/// Flips 4-1: takes out a finite vertex of the facet opposite to a corner that has no other cells
+/// than these two and their two common neighbours. It lies within the four other vertices, and is
+/// hidden now.
 bool Triangulation<3>::flip_vertex(int corner) {
   const int cell = corner >> 2, beyond = topology_.twin(corner) >> 2;
   const int opposite = topology_.vertex(topology_.twin(corner));
@@ -304,50 +304,19 @@ bool Triangulation<3>::resolve(int corner) {
       Quad quad = topology_.vertices(corner >> 2);
       quad[index(i)] = topology_.vertex(topology_.twin(corner));
       const int side =
-          sign(quad);  // of the tetrahedron that the edge opposite to i is in the way of
+          sign(quad);  // below 0 if the edge opposite to i is in the way, 0 if it is flat
       if (side > 0) continue;
       if (flip_edge(corner, (corner & ~3) + i, side < 0 ? 3 : 4)) return true;
     }
     return false;
   };
   if (!flip_facet(corner) && !by_edge() && !flip_vertex(corner)) return false;
-  for (std::size_t k = first; k < touched_.size(); ++k) push_cell(touched_[k]);
+  for (std::size_t k = first; k < touched_.size(); ++k) push_simplex(touched_[k]);
   return true;
-}
-
-/// Far above any need.
-std::int64_t Triangulation<3>::most_flips() const {
-  return 64 * static_cast<std::int64_t>(topology_.slots()) + 10000;
-}
-
-/// Flips until the queue is empty; facets that cannot be flipped end in stuck_.
-/// @return false if the budget is spent, which means that T was no triangulation
-bool Triangulation<3>::drain() {
-  while (!queue_.empty()) {
-    const int corner = queue_.back();
-    queue_.pop_back();
-    if (!topology_.alive(corner >> 2) || !topology_.exchange_flag(corner, false)) continue;
-    if (locally_regular(corner)) continue;
-    if (!resolve(corner)) stuck_.push_back(corner);
-    if (--budget_ < 0) return false;
-  }
-  return true;
-}
-
-/// Drains the queue, and triangulates anew around facets that stay, until T is locally regular.
-bool Triangulation<3>::settle() {
-  for (;;) {
-    if (!drain()) return false;
-    if (stuck_.empty()) return true;
-    const int corner = stuck_.back();
-    stuck_.pop_back();
-    if (!topology_.alive(corner >> 2) || locally_regular(corner) || resolve(corner)) continue;
-    if (!refill_around(corner)) return false;
-  }
 }
 
 /// Refills the stars of the five sites at a facet, or a wider cavity if that one does not hold.
-bool Triangulation<3>::refill_around(int corner) {
+bool Triangulation<3>::unstick(int corner) {
   std::vector<int> sites;
   collect_vertices(std::array{corner, topology_.twin(corner)}, sites);
   for (int ring = 0; ring < kRings; ++ring) {
@@ -371,7 +340,7 @@ bool Triangulation<3>::refill_around(int corner) {
     if (!std::all_of(fresh.begin(), fresh.end(), [&](int cell) { return positive(cell); })) {
       return false;
     }
-    for (const int cell : fresh) push_cell(cell);
+    for (const int cell : fresh) push_simplex(cell);
     ++report_.unstuck;
     return true;
   }
@@ -407,9 +376,7 @@ void Triangulation<3>::unpinch(std::vector<int>& cavity) {
 /// Flips until T is regular, given that it is so but for the facets of the cells in around_ and
 /// touched_.
 bool Triangulation<3>::flip_to_regular() {
-  queue_.clear();
-  stuck_.clear();
-  budget_ = most_flips();
+  start_flips();
   around_.insert(around_.end(), touched_.begin(), touched_.end());
   topology_.clear_marks();
   for (const int cell : around_) topology_.set_mark(cell);
@@ -445,6 +412,7 @@ bool Triangulation<3>::resolve_inverted(int cell) {
   return false;
 }
 
+/// Undoes the flips that log_ holds, the last one first.
 void Triangulation<3>::undo_flips() {
   for (; !log_.empty(); log_.pop_back()) {
     Flip& flip = log_.back();
@@ -459,11 +427,22 @@ void Triangulation<3>::sort_unique(std::vector<int>& list) {
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
+/// Makes T regular after the sites in moved_ have moved.
+bool Triangulation<3>::repair() {
+  collect_around(moved_);
+  return extract_inverted() && flip_to_regular();
+}
+
+/// Builds T from nothing, and chooses the middle.
+void Triangulation<3>::rebuild() {
+  rebuild_by_insertion();
+  choose_middle_at_rest();
+}
+
 /// Lists the cells with a moved vertex in around_, in increasing order.
 void Triangulation<3>::collect_around(std::span<const int> moved) {
   around_.clear();
-  if (moved.size() > index(size_) / 32) {
-    // Stars overlap and lie scattered in memory: one pass over all cells is cheaper.
+  if (moved.size() > index(size_) / kSweptShare) {
     for (const int site : moved) site_note_[index(site)] = 1;
     for (int t = 0; t < topology_.slots(); ++t) {
       const Quad& v = topology_.vertices(t);
@@ -483,43 +462,50 @@ void Triangulation<3>::collect_around(std::span<const int> moved) {
   sort_unique(around_);
 }
 
+/// Lists the inverted tetrahedra of around_ in inverted_.
+void Triangulation<3>::list_inverted() {
+  inverted_.clear();
+  hull_touched_ = false;
+  for (const int cell : around_) {
+    hull_touched_ = hull_touched_ || topology_.infinite(cell);
+    if (!positive(cell)) inverted_.push_back(cell);
+  }
+  const auto infinite = [&](int cell) { return topology_.infinite(cell); };
+  if (std::any_of(inverted_.begin(), inverted_.end(), infinite)) see_hull_again();
+}
+
+/// Looks at the hull again from another point, as inverted infinite tetrahedra may have to do with
+/// the point they are seen from.
+void Triangulation<3>::see_hull_again() {
+  const auto infinite = [&](int cell) { return topology_.infinite(cell); };
+  const auto look_at_hull = [&] {
+    std::erase_if(inverted_, infinite);
+    topology_.star(Topology3::kInfinite, star_);
+    for (const int at : star_) {
+      if (!positive(at >> 2)) inverted_.push_back(at >> 2);
+    }
+  };
+  const Site3 before = middle_;
+  choose_middle();
+  look_at_hull();
+  // A site thrown far takes the mean with it, out of the hull of those at rest.
+  if (std::any_of(inverted_.begin(), inverted_.end(), [&](int cell) {
+        const Quad& v = topology_.vertices(cell);
+        return infinite(cell) &&
+               std::none_of(v.begin(), v.end(), [&](int id) { return moved_place(id); });
+      })) {
+    middle_ = before;
+    look_at_hull();
+  }
+}
+
 /// Flips inverted tetrahedra away; where that fails, takes moved sites out, at their old places,
 /// until it does not.
 /// @return false if too many would have to go
 bool Triangulation<3>::extract_inverted() {
+  const std::int64_t most = present_ / kMostTakenOut;
   touched_.clear();
-  inverted_.clear();
-  hull_touched_ = false;
-  const auto look = [&](int cell) {
-    if (!positive(cell)) inverted_.push_back(cell);
-  };
-  for (const int cell : around_) {
-    hull_touched_ = hull_touched_ || topology_.infinite(cell);
-    look(cell);
-  }
-  const auto infinite = [&](int cell) { return topology_.infinite(cell); };
-  if (std::any_of(inverted_.begin(), inverted_.end(), infinite)) {
-    // Is it the hull or the point it is seen from?
-    const Site3 before = middle_;
-    const auto look_at_hull = [&] {
-      std::erase_if(inverted_, infinite);
-      topology_.star(Topology3::kInfinite, star_);
-      for (const int at : star_) look(at >> 2);
-    };
-    choose_middle();
-    look_at_hull();
-    // A site thrown far takes the mean with it, out of the hull of those at rest.
-    if (std::any_of(inverted_.begin(), inverted_.end(), [&](int cell) {
-          const Quad& v = topology_.vertices(cell);
-          return infinite(cell) &&
-                 std::none_of(v.begin(), v.end(), [&](int id) { return moved_place(id); });
-        })) {
-      middle_ = before;
-      look_at_hull();
-    }
-  }
-
-  const std::int64_t most = present_ / 6;  // about where a build is cheaper
+  list_inverted();
   for (;;) {
     const std::size_t first = touched_.size(), first_note = edges_.mark();
     log_.clear();
@@ -536,6 +522,7 @@ bool Triangulation<3>::extract_inverted() {
     undo_flips();
     edges_.take_back(first_note);
     touched_.resize(first);
+    // A cell without a moved site is an infinite one that the point in the middle has left.
     if (!choose_cover(unresolved_)) return false;
     if (report_.extracted + static_cast<std::int64_t>(cover_.size()) > most) return false;
     sites_.swap(before_);  // T is regular at the old places
@@ -555,25 +542,84 @@ bool Triangulation<3>::extract_inverted() {
   }
 }
 
-/// Fills cover_ with moved sites, at least one in each of the cells.
-/// @return false if one has none: an infinite cell that the point in the middle has left
-bool Triangulation<3>::choose_cover(std::span<const int> cells) {
-  return detail::choose_cover(
-      cells, [&](int cell) { return topology_.vertices(cell); },
-      [&](int id) { return moved_place(id); }, site_note_, cover_);
-}
+// ---- Putting in --------------------------------------------------------------------------------
 
-/// Tries every hidden site. One pass is enough: an insertion only hides others.
-void Triangulation<3>::try_hidden() {
-  std::vector<int> tried;
-  tried.swap(hidden_);
-  for (const int id : tried) {
-    if (insert_visible(id)) {
-      ++report_.reinserted;
-    } else {
-      hidden_.push_back(id);
+/// Inserts a site that has no cell in place of the tetrahedra in conflict with it (Bowyer, Comput.
+/// J. 24 (1981) 162; Watson, ibid. 167), and hides the sites among them.
+/// @pre T is regular
+/// @return false if the site is hidden itself, which then has a fresh hint
+bool Triangulation<3>::insert_visible(int site) {
+  const int start = locate(site, visible_from(site));
+  if (!topology_.infinite(start) && !conflict(start, site)) {
+    topology_.set_corner_of(site, -2 - topology_.vertex(4 * start));
+    return false;
+  }
+  topology_.clear_marks();
+  hole_.assign(1, start);
+  rim_.clear();
+  topology_.set_mark(start);
+  for (std::size_t k = 0; k < hole_.size(); ++k) {
+    for (int corner = 4 * hole_[k]; corner < 4 * hole_[k] + 4; ++corner) {
+      const int beyond = topology_.twin(corner) >> 2;
+      if (topology_.marked(beyond)) continue;
+      if (conflict(beyond, site)) {
+        topology_.set_mark(beyond);
+        hole_.push_back(beyond);
+      } else {
+        rim_.push_back(corner);
+      }
     }
   }
+  // Notes of sites: 2 on the rim of the hole, 1 inside it.
+  const auto note = [&](int v, int value) {
+    if (v >= 0) site_note_[index(v)] = value;
+  };
+  cavity_sites_.clear();
+  for (const int cell : hole_) {
+    for (const int v : topology_.vertices(cell)) {
+      if (v < 0 || site_note_[index(v)] != 0) continue;
+      note(v, 1);
+      cavity_sites_.push_back(v);
+    }
+  }
+  for (const int corner : rim_) {
+    for (const int i : Topology3::kFacet[corner & 3]) note(topology_.vertex((corner & ~3) + i), 2);
+  }
+  note_edges_of_insertion(site);
+  topology_.fill_from(site, hole_, rim_);
+  for (const int v : cavity_sites_) {
+    if (site_note_[index(v)] == 1) hide(v, site);
+    note(v, 0);
+  }
+  last_ = site;
+  return true;
 }
+
+/// Notes what changes when a site is joined to rim_ in place of hole_: the edges inside the hole
+/// go, and one to each site of the rim (noted as 2) comes.
+void Triangulation<3>::note_edges_of_insertion(int site) {
+  if (!edges_.live()) return;
+  topology_.for_each_edge_of(hole_, [&](int a, int b, bool inside) {
+    if (inside) edges_.note_gone(a, b);
+  });
+  for (const int v : cavity_sites_) {
+    if (site_note_[index(v)] == 2) edges_.note_made(site, v);
+  }
+}
+
+/// Lists the finite edges from nothing, auxiliary sites left out.
+void Triangulation<3>::find_edges(EdgeList& list) const {
+  list.find(size_, [&](auto&& f) {
+    for (int t = 0; t < topology_.slots(); ++t) {
+      const Quad& v = topology_.vertices(t);
+      for (const auto& [k, l] : Topology3::kEdges) {
+        const int i = v[index(k)], j = v[index(l)];
+        if ((i | j) >= 0 && std::max(i, j) < size_) f(i, j);
+      }
+    }
+  });
+}
+
+template class detail::MovingSites<3>;
 
 }  // namespace lagrain

@@ -3,6 +3,7 @@
 /// The combinatorial layer of the triangulation in the plane: triangles, neighbours, flips. It
 /// knows no coordinates.
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -13,11 +14,12 @@ namespace lagrain {
 /// over each hull edge, which joins it to the vertex kInfinite. Hull and interior are then the
 /// same.
 ///
-/// Triangle t owns the corners 4 t, 4 t + 1, 4 t + 2 (the fourth slot holds marks, so a triangle
-/// fills half a cache line). A corner names three things: the vertex at it, the directed edge
-/// opposite to it (counter-clockwise in its triangle), and, by twin(), the corner across that edge.
-/// The paper's doubly connected lists keep records for vertices, edges and faces linked by
-/// pointers; here an edge has no record (it is a pair of twins), and a site costs 2 * 32 + 4 bytes.
+/// Triangle t owns the corners 4 t, 4 t + 1, 4 t + 2 (in the place of a fourth are its mark and
+/// flags, so that a triangle fills half a cache line). A corner names three things: the vertex at
+/// it, the directed edge opposite to it (counter-clockwise in its triangle), and, by twin(), the
+/// corner across that edge. The paper's doubly connected lists keep records for vertices, edges and
+/// faces linked by pointers; here an edge has no record (it is a pair of twins), and a site costs
+/// 2 * 32 + 4 bytes.
 class Topology2 {
  public:
   static constexpr int kInfinite = -1;  ///< the vertex at infinity
@@ -30,7 +32,7 @@ class Topology2 {
   void clear(int vertices);
   /// One more vertex, without a corner.
   void add_vertex() { corner_of_.push_back(kNone); }
-  void reserve_triangles(std::size_t count) { triangles_.reserve(count); }
+  void reserve(std::size_t count) { triangles_.reserve(count); }
 
   /// Slots of triangles, dead ones included.
   int slots() const { return static_cast<int>(triangles_.size()); }
@@ -73,6 +75,11 @@ class Topology2 {
   /// True if v has an edge to infinity.
   bool on_hull(int v) const;
 
+  /// Makes one triangle and the three infinite ones round it.
+  /// @pre there is none
+  void start_from(const std::array<int, 3>& triangle);
+  /// Puts the triangles in another order, without gaps. @param order  every triangle once
+  void renumber(std::span<const int> order);
   /// Appends a triangle (or takes a dead slot); twins are still to be linked.
   int add(int a, int b, int c);
   void link(int corner, int other);
@@ -86,11 +93,13 @@ class Topology2 {
   /// Replaces the triangles of `hole` (a disc) by the star of v. Vertices inside the hole keep a
   /// dangling corner: the caller knows them. The new triangles have v at their corner 0.
   /// @param rim  corners, inside the hole, whose opposite edge bounds it; any order
-  void star(int v, std::span<const int> hole, std::span<const int> rim);
+  void fill_from(int v, std::span<const int> hole, std::span<const int> rim);
 
-  /// A note per triangle, 0 at first.
-  int mark(int triangle) const { return triangles_[index(triangle)].mark; }
-  void set_mark(int triangle, int mark) { triangles_[index(triangle)].mark = mark; }
+  /// Marks: a triangle is marked or not, and all marks vanish at once.
+  void clear_marks();
+  bool marked(int triangle) const { return triangles_[index(triangle)].mark == epoch_; }
+  void set_mark(int triangle) { triangles_[index(triangle)].mark = epoch_; }
+
   /// Sets or clears the flag of a corner; returns what it was.
   bool exchange_flag(int corner, bool on) {
     int& flags = triangles_[index(corner >> 2)].flags;
@@ -99,10 +108,11 @@ class Topology2 {
     flags = on ? flags | bit : flags & ~bit;
     return was;
   }
-  /// Whether a triangle is as it should be between updates: no flag is set, and its note is no
-  /// larger than the last.
-  bool at_rest(int triangle, int last_mark) const {
-    return triangles_[index(triangle)].flags == 0 && mark(triangle) <= last_mark;
+  /// Whether a triangle is as it should be between updates: no flag is set, and its mark is of this
+  /// epoch or of one before.
+  bool at_rest(int triangle) const {
+    const Triangle& t = triangles_[index(triangle)];
+    return t.flags == 0 && t.mark <= epoch_;
   }
   /// The dead slots, of which the last is taken next.
   std::span<const int> free_slots() const { return free_; }
@@ -126,7 +136,8 @@ class Topology2 {
   std::vector<Triangle> triangles_;
   std::vector<int> free_;
   std::vector<int> corner_of_;  // of vertex v at v + 1
-  std::vector<Rim> rim_;        // scratch of star()
+  int epoch_ = 1;
+  std::vector<Rim> rim_;  // scratch of fill_from()
 };
 
 }  // namespace lagrain

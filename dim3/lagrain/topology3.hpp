@@ -34,7 +34,7 @@ class Topology3 {
   void clear(int vertices);
   /// One more vertex, without a corner.
   void add_vertex() { corner_of_.push_back(kNone); }
-  void reserve_cells(std::size_t count);
+  void reserve(std::size_t count);
 
   /// Slots of tetrahedra, dead ones included.
   int slots() const { return static_cast<int>(cells_.size()); }
@@ -71,8 +71,11 @@ class Topology3 {
   /// least that many.
   int degree(int corner, int other, int limit) const;
   /// The corners at vertex v, one per cell of its star; uses marks.
-  void star(int v, std::vector<int>& corners);
+  void star(int v, std::vector<int>& corners) const;
 
+  /// Makes one tetrahedron and the four infinite ones round it.
+  /// @pre there is none
+  void start_from(const Quad& quad);
   /// Puts the cells in another order, without gaps. @param order  every cell once
   void renumber(std::span<const int> order);
   /// Appends a cell (or takes a dead slot); twins are still to be linked.
@@ -94,10 +97,11 @@ class Topology3 {
   /// @param rim  corners, inside the hole, whose opposite facet bounds it; any order
   void fill_from(int v, std::span<const int> hole, std::span<const int> rim);
 
-  /// Marks: a cell is marked or not, and all marks vanish at once.
-  void clear_marks();
+  /// Marks: a cell is marked or not, and all marks vanish at once. They are scratch, which whoever
+  /// only reads may use.
+  void clear_marks() const;
   bool marked(int cell) const { return mark_[index(cell)] == epoch_; }
-  void set_mark(int cell) { mark_[index(cell)] = epoch_; }
+  void set_mark(int cell) const { mark_[index(cell)] = epoch_; }
 
   /// Calls f(a, b, inside) once for each edge that has a marked cell around it: its ends, and
   /// whether all cells around it are marked. An edge is what cells turn around, not a pair of
@@ -151,11 +155,11 @@ class Topology3 {
   void set(int cell, const Quad& quad);
 
   std::vector<Cell> cells_;
-  std::vector<int> mark_;
+  mutable std::vector<int> mark_;
   std::vector<unsigned char> flags_;
   std::vector<int> free_;
   std::vector<int> corner_of_;  // of vertex v at v + 1
-  int epoch_ = 1;
+  mutable int epoch_ = 1;
   std::vector<int> outside_;  // scratch of fill_from()
 };
 

@@ -289,6 +289,23 @@ void check_found(Kept kept, const std::string& error, Plant&& plant) {
   check_names(report_of(kept), error);
 }
 
+/// Errors in what is kept of a set that does not span all dimensions.
+template <int Dim>
+void check_flat_set(const Triangulation<Dim>& t) {
+  const Edge none = no_edge(t);
+  check_found(t, "the list of edges is out of date",
+              [](auto& u) { Probe::listed(Probe::edges(u)).pop_back(); });
+  check_found(t, "the list of edges is out of date",
+              [&](auto& u) { Probe::edges(u).note_made(none.first, none.second); });
+  for (const int more : {-1, 1}) {
+    check_found(t, "the dimension is wrong", [&](auto& u) { Probe::dimension(u) += more; });
+  }
+  check_found(t, "the corner of the site belongs to another", [](auto& u) {
+    // Of the first auxiliary site.
+    Probe::topology(u).set_corner_of(u.size(), Probe::topology(u).corner_of(0));
+  });
+}
+
 }  // namespace
 
 TEST_SUITE("planted_errors") {
@@ -418,15 +435,9 @@ TEST_SUITE("planted_errors") {
     const int some = finite_simplex(t);
 
     check_found(t, simplex, [&](auto& u) { Probe::topology(u).exchange_flag(4 * some + 1, true); });
-    if constexpr (S::Dim == 2) {
-      check_found(t, simplex,
-                  [&](auto& u) { Probe::topology(u).set_mark(some, Probe::epoch(u) + 1); });
-      check_found(t, site, [](auto& u) { Probe::site_epoch(u)[0] = Probe::epoch(u) + 1; });
-      check_found(t, site, [](auto& u) { Probe::site_count(u)[0] = 1; });
-    } else {
-      check_found(t, simplex,
-                  [&](auto& u) { Probe::marks(u)[static_cast<std::size_t>(some)] += 1000; });
-      check_found(t, site, [](auto& u) { Probe::site_note(u)[0] = 1; });
+    check_found(t, simplex, [&](auto& u) { Probe::mark(u, some) += 1000; });
+    check_found(t, site, [](auto& u) { Probe::site_note(u)[0] = 1; });
+    if constexpr (S::Dim == 3) {
       // What counts edges uses these notes.
       check_found(t, "Euler's relation fails", [](auto& u) { Probe::vertex_note(u)[0] = 1; });
     }
@@ -454,11 +465,9 @@ TEST_SUITE("planted_errors") {
 
     check_found(t, error, [](auto& u) { Probe::places_before(u)[0].y += 1e-9; });
     check_found(t, error, [](auto& u) { Probe::places_before(u)[0].w += 1e-9; });
-    check_found(t, S::Dim == 2 ? "the line differs" : "the corner of the site belongs to another",
-                [](auto& u) { --Probe::dimension(u); });
-    check_found(
-        t, S::Dim == 2 ? "the dimension is wrong" : "the corner of the site belongs to another",
-        [](auto& u) { Probe::dimension(u) += S::Dim == 2 ? 1 : -2; });
+    for (const int more : {-1, 1}) {
+      check_found(t, "the dimension is wrong", [&](auto& u) { Probe::dimension(u) += more; });
+    }
   }
 
   TEST_CASE_TEMPLATE("T: neighbours that do not know each other", S, Space<2>, Space<3>) {
@@ -531,59 +540,38 @@ TEST_SUITE("planted_errors") {
                 [](auto& u) { Probe::thin(u) = true; });
   }
 
-  TEST_CASE("T in the plane: what is kept of sites on one line") {
-    Rows<2> rows;
-    for (int k = 0; k < 8; ++k) rows.push_back({1.0 * k, 2.0 * k, k == 4 ? -30.0 : 0.1 * k});
-    const auto t = built(site_set<2>("line", rows, 1));
+  TEST_CASE_TEMPLATE("T: what is kept of sites on a line", S, Space<2>, Space<3>) {
+    constexpr int Dim = S::Dim;
+    SiteSet<Dim> line{"line", Columns<Dim>(Dim, 8), Eigen::VectorXd(8)};
+    for (int k = 0; k < 8; ++k) {
+      for (int axis = 0; axis < Dim; ++axis) line.x(axis, k) = (axis + 1) * k;
+      line.w[k] = k == 4 ? -30 : 0.1 * k;
+    }
+    const auto t = built(line);
     REQUIRE(t.dimension() == 1);
     REQUIRE(hidden(t) == std::vector<int>{4});
-    const std::string differs = "the line differs from a fresh one";
 
-    check_found(t, differs, [](auto& u) { std::swap(Probe::line(u)[2], Probe::line(u)[3]); });
-    check_found(t, differs, [](auto& u) { Probe::line(u).pop_back(); });
-    check_found(t, differs, [](auto& u) { Probe::dimension(u) = 0; });
-    check_found(t, differs,
-                [](auto& u) { change_unseen(u, 2, [](auto& site) { site.y += 1e-9; }); });
-    check_found(t, differs, [](auto& u) { change_unseen(u, 4, [](auto& site) { site.w = 0.4; }); });
-    check_found(t, "there is a line beside the triangles",
-                [](auto& u) { Probe::dimension(u) = 2; });
-    check_found(t, "the place of the site in the line belongs to another",
-                [](auto& u) { Probe::topology(u).set_corner_of(2, 0); });
+    check_flat_set(t);
     check_found(t, "the hints of the hidden site lead nowhere",
                 [](auto& u) { Probe::topology(u).set_corner_of(4, -2 - 4); });
-    check_found(t, "the list of edges is out of date",
-                [](auto& u) { Probe::edges(u).note_gone(0, 1); });
-    check_found(t, "the list of edges is out of date",
-                [](auto& u) { Probe::edges(u).note_made(0, 7); });
-    check_found(some_triangulation<2>(), "there is a line beside the triangles",
-                [](auto& u) { Probe::line(u).push_back(0); });
+    check_found(t, "the hidden site has a cell",
+                [](auto& u) { change_unseen(u, 4, [](auto& site) { site.w = 0.4; }); });
+    check_found(t, "the dimension is wrong",
+                [](auto& u) { change_unseen(u, 2, [](auto& site) { site.y += 1e-9; }); });
   }
 
-  TEST_CASE("T in space: what is kept of sites on a line or in a plane") {
-    Rows<3> line, plane{{0.1, 0.1, 0, 0}};
+  TEST_CASE("T: what is kept of sites in a plane in space") {
+    Rows<3> plane{{0.1, 0.1, 0, 0}};
     for (int k = 0; k < 5; ++k) {
-      line.push_back({1.0 * k, 2.0 * k, -1.0 * k, 0.1 * k});
       const double angle = 2 * std::numbers::pi * k / 5;
       plane.push_back({std::cos(angle), std::sin(angle), 0, 0});
     }
-    const auto on_line = built(site_set<3>("line", line, 1));
-    const auto in_plane = built(site_set<3>("plane", plane, 1));
-    REQUIRE(on_line.dimension() == 1);
-    REQUIRE(in_plane.dimension() == 2);
+    const auto t = built(site_set<3>("plane", plane, 1));
+    REQUIRE(t.dimension() == 2);
 
-    for (const auto& t : {on_line, in_plane}) {
-      check_found(t, "the list of edges is out of date",
-                  [](auto& u) { Probe::listed(Probe::edges(u)).pop_back(); });
-      check_found(t, "Euler's relation fails", [](auto& u) { ++Probe::dimension(u); });
-      check_found(t, "the corner of the site belongs to another",
-                  [](auto& u) { --Probe::dimension(u); });
-      check_found(t, "the corner of the site belongs to another", [](auto& u) {
-        // Of the first auxiliary site.
-        Probe::topology(u).set_corner_of(u.size(), Probe::topology(u).corner_of(0));
-      });
-    }
+    check_flat_set(t);
     // Away from the auxiliary site, so that all simplices stay as they are.
-    check_found(in_plane, "the dimension is wrong",
+    check_found(t, "the dimension is wrong",
                 [](auto& u) { change_unseen(u, 0, [](auto& site) { site.z = -1e-3; }); });
   }
 

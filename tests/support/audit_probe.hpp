@@ -3,6 +3,8 @@
 /// The way for tests to what classes keep to themselves, to plant errors there that audits must
 /// find.
 
+#include <cstddef>
+
 namespace lagrain {
 
 /// Befriended by all that can be audited.
@@ -15,17 +17,20 @@ struct AuditProbe {
   static auto& places_before(auto& t) { return t.before_; }
   static auto& present(auto& t) { return t.present_; }
   static auto& dimension(auto& t) { return t.dimension_; }
-  static auto& line(auto& t) { return t.line_; }
-  static auto& epoch(auto& t) { return t.epoch_; }
-  static auto& site_epoch(auto& t) { return t.site_epoch_; }
-  static auto& site_count(auto& t) { return t.site_count_; }
   static auto& site_note(auto& t) { return t.site_note_; }
   static auto& vertex_note(auto& t) { return t.vertex_note_; }
   static auto& middle(auto& t) { return t.middle_; }
   static auto& thin(auto& t) { return t.thin_; }
   static auto& last(auto& t) { return t.last_; }
   static auto& free_slots(auto& t) { return t.topology_.free_; }
-  static auto& marks(auto& t) { return t.topology_.mark_; }
+  static auto& mark(auto& t, int simplex) {
+    const auto k = static_cast<std::size_t>(simplex);
+    if constexpr (requires { t.topology_.mark_; }) {
+      return t.topology_.mark_[k];
+    } else {
+      return t.topology_.triangles_[k].mark;
+    }
+  }
 
   // Lists of edges.
   static auto& listed(auto& list) { return list.edges_; }
