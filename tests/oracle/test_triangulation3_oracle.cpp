@@ -90,7 +90,7 @@ TEST_SUITE("triangulation3 against CGAL") {
           for (std::size_t k = 0; k < 5; ++k) {
             const int i = random.below(s.size());
             p[k] = {s.x(0, i), s.x(1, i), s.x(2, i), s.w[i]};
-            q[k] = test::weighted<FastKernel>(s, i);
+            q[k] = test::Cgal<3, FastKernel>::weighted(s, i);
           }
 
           const int side = orientation(p[0], p[1], p[2], p[3]);
