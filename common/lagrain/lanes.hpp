@@ -178,4 +178,15 @@ struct ScalarBinaryOpTraits<lagrain::Lanes<W>, double, Op> {
   using ReturnType = lagrain::Lanes<W>;
 };
 
+namespace internal {
+
+/// Lanes keep their own alignment in Eigen's arrays. By default Eigen asks for that of the widest
+/// vectors that the compiler is told of, which may be less: an error for clang.
+template <int W, int Size>
+struct compute_default_alignment<lagrain::Lanes<W>, Size> {
+  enum { value = 0 };
+};
+
+}  // namespace internal
+
 }  // namespace Eigen
