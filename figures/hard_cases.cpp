@@ -867,7 +867,7 @@ PushedThrough pushed_through_walls(const Checkpoint& checkpoint) {
   soft.law.stiffness = 5 * weight<2>(kRadius) / kRadius;
   scene.materials.push_back({"mud", 0});
   scene.pairs.push_back(soft);
-  scene.walls[0].kind = 1;
+  scene.walls[0].material = 1;
   watch(*make_run(scene, 1), 10000, result.soft_floor, checkpoint);
   return result;
 }

@@ -29,6 +29,14 @@ struct AuditError : std::logic_error {
   using std::logic_error::logic_error;
 };
 
+/// Whether this build audits, after every update, what is kept because that is faster (the CMake
+/// option LAGRAIN_AUDIT).
+#ifdef LAGRAIN_AUDIT
+inline constexpr bool kAudited = true;
+#else
+inline constexpr bool kAudited = false;
+#endif
+
 namespace detail {
 /// @throws AuditError with the first of the sentences, if there is one
 inline void expect_no_defect(const std::string& what, const std::vector<std::string>& defects) {

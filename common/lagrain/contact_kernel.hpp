@@ -77,7 +77,7 @@ template <int Dim, class Law>
 struct ContactScene {
   const GrainRecord<Dim, Law::needs>* grains = nullptr;
   LoadRecord<Dim, Law::needs>* loads = nullptr;  ///< of the slots from first_slot on
-  const std::vector<std::uint8_t>* kinds = nullptr;
+  const std::vector<std::uint8_t>* materials = nullptr;
   const LawTable<Law>* laws = nullptr;
   const Wall<Dim>* walls = nullptr;
   double time_step = 0;        ///< what memories and losses advance by [s]
@@ -164,7 +164,7 @@ class Sums {
 /// The code of a sweep, for contacts by kLanes<Real> at once. Inlined as a whole into functions for
 /// one instruction set each.
 ///
-/// @tparam kOneLaw  all grains are of kind 0: the common case, and the fast one
+/// @tparam kOneLaw  all grains are of material 0: the common case, and the fast one
 template <int Dim, class Law, class Real, bool kOneLaw>
 struct Sweep {
   static constexpr Needs needs = Law::needs;
@@ -202,7 +202,7 @@ struct Sweep {
                             InRow at) {
     Memory m;
     if constexpr (Memory::kReals > 0) {
-      for (int r = 0; r < Memory::kReals; ++r) detail::read(m[r], table.part(r) + at.first);
+      for (int r = 0; r < Memory::kReals; ++r) detail::read(m[r], table.memory_row(r) + at.first);
     }
     return m;
   }
@@ -212,8 +212,8 @@ struct Sweep {
     Memory m;
     if constexpr (Memory::kReals > 0) {
       for (int r = 0; r < Memory::kReals; ++r) {
-        const double* part = table.part(r);
-        for (std::size_t k = 0; k < kWidth; ++k) set_lane(m[r], static_cast<int>(k), part[at[k]]);
+        const double* row = table.memory_row(r);
+        for (std::size_t k = 0; k < kWidth; ++k) set_lane(m[r], static_cast<int>(k), row[at[k]]);
       }
     }
     return m;
@@ -222,7 +222,7 @@ struct Sweep {
   static void write_memory(PairTable<P, typename Law::template Memory<Dim>>& table, InRow at,
                            const Memory& m) {
     if constexpr (Memory::kReals > 0) {
-      for (int r = 0; r < Memory::kReals; ++r) detail::write(table.part(r) + at.first, m[r]);
+      for (int r = 0; r < Memory::kReals; ++r) detail::write(table.memory_row(r) + at.first, m[r]);
     }
   }
   template <class P>
@@ -230,20 +230,21 @@ struct Sweep {
                            const Memory& m) {
     if constexpr (Memory::kReals > 0) {
       for (int r = 0; r < Memory::kReals; ++r) {
-        double* part = table.part(r);
-        for (std::size_t k = 0; k < kWidth; ++k) part[at[k]] = lane(m[r], static_cast<int>(k));
+        double* row = table.memory_row(r);
+        for (std::size_t k = 0; k < kWidth; ++k) row[at[k]] = lane(m[r], static_cast<int>(k));
       }
     }
   }
 
-  std::size_t kind(int slot) const {
-    return scene.kinds->empty() ? 0 : (*scene.kinds)[static_cast<std::size_t>(slot)];
+  std::size_t material(int slot) const {
+    return scene.materials->empty() ? 0 : (*scene.materials)[static_cast<std::size_t>(slot)];
   }
 
-  /// The law's answer where `touching`, zero elsewhere; `partner_kind(k)` is that of lane k.
-  template <class Mask, class PartnerKind>
+  /// The law's answer where `touching`, zero elsewhere; `partner_material(k)` is that of lane k.
+  template <class Mask, class PartnerMaterial>
   Response<Dim, Real> respond(const Touch<Dim, Real>& touch, const Mask& touching,
-                              const Slots& slot, PartnerKind&& partner_kind, Memory& memory) const {
+                              const Slots& slot, PartnerMaterial&& partner_material,
+                              Memory& memory) const {
     Response<Dim, Real> response;
     if constexpr (kOneLaw) {
       response = only_law.respond(touch, memory, scene.time_step);
@@ -251,7 +252,7 @@ struct Sweep {
       // One law after the other, each for its own lanes.
       std::array<const Law*, kWidth> law;
       for (std::size_t k = 0; k < kWidth; ++k) {
-        law[k] = &scene.laws->between(kind(slot[k]), partner_kind(k));
+        law[k] = &scene.laws->between(material(slot[k]), partner_material(k));
       }
       const Memory past = memory;
       for (std::size_t first = 0; first < kWidth; ++first) {
@@ -376,7 +377,7 @@ struct Sweep {
     for (int d = 0; d < Dim; ++d) touch.slip[d] = only_if(touching, touch.slip[d]);
     Memory memory = read_memory(table, at);
     const Response<Dim, Real> response = respond(
-        touch, touching, i, [&](std::size_t k) { return kind(j[k]); }, memory);
+        touch, touching, i, [&](std::size_t k) { return material(j[k]); }, memory);
     write_memory(table, at, memory);
     const Real limit = scene.largest_overlap * smaller(body_i.radius, body_j.radius);
     note(response, touching, Real(touch.overlap - limit), part);
@@ -429,11 +430,11 @@ struct Sweep {
     if (!any(touching)) return write_memory(table, InRow{first}, Memory{});
 
     Memory memory = read_memory(table, InRow{first});
-    const auto wall_kind = [&](std::size_t k) {
+    const auto wall_material = [&](std::size_t k) {
       const int w = table.pairs()[first + k].wall;
-      return static_cast<std::size_t>(scene.walls[w].kind);
+      return static_cast<std::size_t>(scene.walls[w].material);
     };
-    const Response<Dim, Real> response = respond(touch, touching, i, wall_kind, memory);
+    const Response<Dim, Real> response = respond(touch, touching, i, wall_material, memory);
     write_memory(table, InRow{first}, memory);
     note(response, touching, Real(touch.overlap - scene.largest_overlap * body.radius), part);
 

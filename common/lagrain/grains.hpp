@@ -32,13 +32,13 @@ struct NoSpin {};
 /// A pinned grain has inverse mass and inverse inertia 0: forces on it are measured, it stays.
 template <int Dim, Needs needs>
 struct Grains : std::conditional_t<needs.spin, SpinState<Dim>, NoSpin> {
-  Columns<Dim> position;           ///< Dim x N [m]
-  Columns<Dim> velocity;           ///< Dim x N [m/s]
-  Columns<Dim> force;              ///< Dim x N [N]
-  Eigen::VectorXd radius;          ///< N [m], positive
-  Eigen::VectorXd mass;            ///< N [kg], positive
-  Eigen::VectorXd inverse_mass;    ///< N [1/kg], 0 for a pinned grain
-  std::vector<std::uint8_t> kind;  ///< N: row of the table of laws; empty while there is one kind
+  Columns<Dim> position;               ///< Dim x N [m]
+  Columns<Dim> velocity;               ///< Dim x N [m/s]
+  Columns<Dim> force;                  ///< Dim x N [N]
+  Eigen::VectorXd radius;              ///< N [m], positive
+  Eigen::VectorXd mass;                ///< N [kg], positive
+  Eigen::VectorXd inverse_mass;        ///< N [1/kg], 0 for a pinned grain
+  std::vector<std::uint8_t> material;  ///< N: row of the table of laws; empty if all are 0
 
   int size() const { return static_cast<int>(radius.size()); }
 };
@@ -51,7 +51,7 @@ struct Grain {
   SpinVec<Dim> omega = SpinVec<Dim>::Zero();  ///< [rad/s]; ignored where nothing spins
   double radius = 0;                          ///< [m]
   double mass = 0;                            ///< [kg]
-  int kind = 0;                               ///< row of the table of laws
+  int material = 0;                           ///< row of the table of laws
   bool pinned = false;
 };
 
@@ -72,8 +72,8 @@ double grain_inertia(double mass, double radius) {
 }
 
 /// Lays grains out as arrays, forces zero.
-/// @throws ContractError if a radius or mass is not positive and finite, a number is NaN, a kind
-/// does not fit its byte, or a pinned grain moves.
+/// @throws ContractError if a radius or mass is not positive and finite, a number is NaN, a
+/// material does not fit its byte, or a pinned grain moves.
 template <int Dim, Needs needs>
 Grains<Dim, needs> make_grains(const std::vector<Grain<Dim>>& list) {
   const auto n = static_cast<Eigen::Index>(list.size());
@@ -89,7 +89,7 @@ Grains<Dim, needs> make_grains(const std::vector<Grain<Dim>>& list) {
     grains.torque.setZero(kSpinDim<Dim>, n);
     grains.inverse_inertia.resize(n);
   }
-  bool one_kind = true;
+  bool one_material = true;
   for (Eigen::Index i = 0; i < n; ++i) {
     const Grain<Dim>& grain = list[static_cast<std::size_t>(i)];
     const std::string name = "grain " + std::to_string(i) + ": ";
@@ -100,8 +100,8 @@ Grains<Dim, needs> make_grains(const std::vector<Grain<Dim>>& list) {
     LAGRAIN_EXPECTS(
         grain.position.allFinite() && grain.velocity.allFinite() && grain.omega.allFinite(),
         name + "position, velocity or spin is not a number");
-    LAGRAIN_EXPECTS(grain.kind >= 0 && grain.kind <= 255,
-                    name + "kind " + std::to_string(grain.kind));
+    LAGRAIN_EXPECTS(grain.material >= 0 && grain.material <= 255,
+                    name + "material " + std::to_string(grain.material));
     LAGRAIN_EXPECTS(!grain.pinned || (grain.velocity.isZero(0) && grain.omega.isZero(0)),
                     name + "pinned, but moving");
     grains.position.col(i) = grain.position;
@@ -114,11 +114,11 @@ Grains<Dim, needs> make_grains(const std::vector<Grain<Dim>>& list) {
       grains.inverse_inertia[i] =
           grain.pinned ? 0 : 1 / grain_inertia<Dim>(grain.mass, grain.radius);
     }
-    one_kind = one_kind && grain.kind == 0;
+    one_material = one_material && grain.material == 0;
   }
-  if (!one_kind) {
+  if (!one_material) {
     for (const Grain<Dim>& grain : list)
-      grains.kind.push_back(static_cast<std::uint8_t>(grain.kind));
+      grains.material.push_back(static_cast<std::uint8_t>(grain.material));
   }
   return grains;
 }

@@ -1,6 +1,6 @@
 #pragma once
 /// @file
-/// Which law acts between which kinds of grain and wall.
+/// Which law acts between which materials.
 
 #include <lagrain/check.hpp>
 
@@ -11,38 +11,46 @@
 
 namespace lagrain {
 
-/// Symmetric table of laws, one per pair of kinds. A scene of one kind has a table of one law, and
-/// its grains store no kind.
+/// Symmetric table of laws, one for each pair of materials. A table of one law holds for all
+/// materials, however many there are.
 template <class Law>
 class LawTable {
  public:
   LawTable() = default;
-  explicit LawTable(Law law, int kinds = 1)
-      : kinds_(static_cast<std::size_t>(kinds)), laws_(kinds_ * kinds_, law) {
-    LAGRAIN_EXPECTS(kinds >= 1 && kinds <= 255, "kinds " + std::to_string(kinds));
+  /// @param materials  rows of the table, from 1 to 255; every pair has this law until set() gives
+  ///                   it another
+  /// @throws ContractError for another number of materials
+  explicit LawTable(Law law, int materials = 1)
+      : materials_(static_cast<std::size_t>(materials)), laws_(materials_ * materials_, law) {
+    LAGRAIN_EXPECTS(materials >= 1 && materials <= 255, "materials " + std::to_string(materials));
   }
 
   void set(int a, int b, const Law& law) {
     laws_[index(static_cast<std::size_t>(a), static_cast<std::size_t>(b))] = law;
     laws_[index(static_cast<std::size_t>(b), static_cast<std::size_t>(a))] = law;
   }
-  const Law& between(std::size_t a, std::size_t b) const { return laws_[index(a, b)]; }
-  int kinds() const { return static_cast<int>(kinds_); }
-
-  /// The law between two grains, or between a grain and a wall of the given kind.
-  const Law& of(const std::vector<std::uint8_t>& kind, int i, int j) const {
-    if (kind.empty()) return laws_.front();
-    return between(kind[static_cast<std::size_t>(i)], kind[static_cast<std::size_t>(j)]);
+  const Law& between(std::size_t a, std::size_t b) const {
+    return one_law() ? laws_.front() : laws_[index(a, b)];
   }
-  const Law& with_wall(const std::vector<std::uint8_t>& kind, int i, int wall_kind) const {
-    return between(kind.empty() ? 0 : kind[static_cast<std::size_t>(i)],
-                   static_cast<std::size_t>(wall_kind));
+  int materials() const { return static_cast<int>(materials_); }
+  bool one_law() const { return materials_ == 1; }
+
+  /// The law between the grains i and j.
+  /// @param material  of all grains; empty if all are of material 0
+  const Law& of(const std::vector<std::uint8_t>& material, int i, int j) const {
+    if (material.empty()) return laws_.front();
+    return between(material[static_cast<std::size_t>(i)], material[static_cast<std::size_t>(j)]);
+  }
+  /// The law between the grain i and a wall.
+  const Law& with_wall(const std::vector<std::uint8_t>& material, int i, int wall_material) const {
+    return between(material.empty() ? 0 : material[static_cast<std::size_t>(i)],
+                   static_cast<std::size_t>(wall_material));
   }
 
  private:
-  std::size_t index(std::size_t a, std::size_t b) const { return a * kinds_ + b; }
+  std::size_t index(std::size_t a, std::size_t b) const { return a * materials_ + b; }
 
-  std::size_t kinds_ = 0;
+  std::size_t materials_ = 0;
   std::vector<Law> laws_;
 };
 

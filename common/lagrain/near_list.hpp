@@ -78,7 +78,8 @@ class NearList {
 
   std::int64_t refreshes() const { return refreshes_; }
   std::int64_t amended() const { return amended_; }  ///< grains centred anew between refreshes
-  bool fresh() const { return known_; }
+  /// False before the first refresh, and when the grains have new slots.
+  bool listed() const { return listed_; }
 
   /// Sets the number of grains and the size of blocks; nothing is listed.
   void reset(int size, int block_size) {
@@ -91,14 +92,14 @@ class NearList {
       first = block.end_slot = std::min(size, first + block_size);
     }
     across_ = 0;
-    known_ = false;
+    listed_ = false;
   }
 
   /// How far the frame has moved since the last refresh, at time t [s].
   Vec<Dim> shift(double t) const { return (t - time_) * drift_; }
 
   /// Whether a grain at x, where the frame has moved by `shift`, is within its margin. NaN is not.
-  /// @pre the list is fresh
+  /// @pre listed()
   bool holds(int slot, const Vec<Dim>& x, const Vec<Dim>& shift) const {
     const Stay& stay = stay_[index(slot)];
     return (x - shift - stay.centre).squaredNorm() <= stay.squared_margin;
@@ -124,19 +125,19 @@ class NearList {
     drift_ = common_drift<Dim>(size_, velocity);
     margin_.resize(size_);
     for (int i = 0; i < size_; ++i) margin_[i] = wanted_margin(radius[i], velocity(i), dt);
-    neighbourhood.near_pairs(x, radius, margin_, fresh_);
+    neighbourhood.near_pairs(x, radius, margin_, found_);
     list_pairs();
     list_walls(x, radius, all_walls, dt);
     stay_.resize(index(size_));
     for (int i = 0; i < size_; ++i) stay(i, x.col(i));
     paid_ = 0;
-    known_ = true;
+    listed_ = true;
     ++refreshes_;
-#ifdef LAGRAIN_AUDIT
-    if (keeps_promise(neighbourhood)) {
-      detail::expect_no_defect("near list, refreshed", audit(radius, all_walls));
+    if constexpr (kAudited) {
+      if (keeps_promise(neighbourhood)) {
+        detail::expect_no_defect("near list, refreshed", audit(radius, all_walls));
+      }
     }
-#endif
   }
 
   /// Centres the grains anew that have left their margins, and adds the pairs that they lack. What
@@ -146,7 +147,7 @@ class NearList {
   /// @param velocity  velocity(slot) [m/s]
   /// @returns false if a refresh is due: the neighbourhood cannot tell without, or the amendments
   ///          since the last one have cost as much as it does
-  /// @pre the list is fresh, and the walls hold
+  /// @pre listed(), and the walls hold
   template <AmendableNeighbourhood<Dim> N, class Place, class Velocity>
   bool amend(std::vector<int>& strays, Place&& place, Velocity&& velocity,
              const Eigen::VectorXd& radius, const std::vector<Wall<Dim>>& all_walls,
@@ -160,13 +161,13 @@ class NearList {
     }
     paid_ += kPriceOfStray * static_cast<std::int64_t>(strays.size());
     if (paid_ > kPriceOfRefresh * size_ ||
-        !neighbourhood.pairs_of(strays, place_here, radius, margin_, fresh_)) {
+        !neighbourhood.pairs_of(strays, place_here, radius, margin_, found_)) {
       return false;
     }
-    std::erase_if(fresh_, [&](const Pair& pair) { return surely_listed(pair, radius); });
+    std::erase_if(found_, [&](const Pair& pair) { return surely_listed(pair, radius); });
     for (const int i : strays) stay(i, place_here(i));
     bool ends_change = false;
-    for (const Pair& pair : fresh_) {
+    for (const Pair& pair : found_) {
       const auto [i, j] = pair;
       if (!within_reach<Dim>(stay_[index(i)].centre, radius[i] + margin_[i], stay_[index(j)].centre,
                              radius[j] + margin_[j])) {
@@ -186,15 +187,15 @@ class NearList {
       }
     }
     amended_ += static_cast<std::int64_t>(strays.size());
-#ifdef LAGRAIN_AUDIT
-    if (keeps_promise(neighbourhood)) {
-      detail::expect_no_defect("near list, amended", audit(radius, all_walls));
+    if constexpr (kAudited) {
+      if (keeps_promise(neighbourhood)) {
+        detail::expect_no_defect("near list, amended", audit(radius, all_walls));
+      }
     }
-#endif
     return true;
   }
 
-  /// The grains have new slots: the memories follow, and the list is no longer fresh.
+  /// The grains have new slots: the memories follow, and the list waits for a refresh.
   /// @param slot  new slot of each old one
   void renumber(const std::vector<int>& slot) {
     std::vector<std::pair<Pair, Memory>> pairs;
@@ -234,12 +235,12 @@ class NearList {
       wall_pair = last_wall;
     }
     list_ends();
-    known_ = false;
+    listed_ = false;
   }
 
   /// Checks what is listed against a search from nothing, and what is kept beside it; empty means
   /// valid. (That grains are within their margins is for `holds` to say.)
-  /// @pre the list is fresh
+  /// @pre listed()
   std::vector<std::string> audit(const Eigen::VectorXd& radius,
                                  const std::vector<Wall<Dim>>& all_walls) const {
     std::vector<std::string> defects;
@@ -337,21 +338,19 @@ class NearList {
     table.assign(std::move(keys), memories);
   }
 
-  Block& block_of(int slot) {
-    return blocks_[index(slot / block_size_)];
-  }
+  Block& block_of(int slot) { return blocks_[index(slot / block_size_)]; }
 
-  /// Puts fresh_ into the blocks' tables.
+  /// Puts found_ into the blocks' tables.
   void list_pairs() {
-    auto pair = fresh_.cbegin();
+    auto pair = found_.cbegin();
     for (Block& block : blocks_) {
-      fresh_within_.clear();
-      fresh_across_.clear();
-      for (; pair != fresh_.cend() && pair->i < block.end_slot; ++pair) {
-        (pair->j < block.end_slot ? fresh_within_ : fresh_across_).push_back(*pair);
+      found_within_.clear();
+      found_across_.clear();
+      for (; pair != found_.cend() && pair->i < block.end_slot; ++pair) {
+        (pair->j < block.end_slot ? found_within_ : found_across_).push_back(*pair);
       }
-      block.within.replace(fresh_within_);
-      block.across.replace(fresh_across_);
+      block.within.replace(found_within_);
+      block.across.replace(found_across_);
     }
     list_ends();
   }
@@ -456,7 +455,7 @@ class NearList {
 
   void list_walls(const Columns<Dim>& x, const Eigen::VectorXd& radius,
                   const std::vector<Wall<Dim>>& all_walls, double dt) {
-    fresh_walls_.clear();
+    found_walls_.clear();
     wall_centre_.resize(all_walls.size());
     wall_margin_.resize(all_walls.size());
     const double slack = size_ > 0 ? floor_ * radius.minCoeff() : 0;
@@ -471,14 +470,14 @@ class NearList {
       wall.for_each_within(
           x, [&](int i) { return radius[i] + margin_[i] + reach; },
           [&](int i) {
-            fresh_walls_.push_back({i, static_cast<int>(w)});
+            found_walls_.push_back({i, static_cast<int>(w)});
           });
     }
-    std::sort(fresh_walls_.begin(), fresh_walls_.end());
-    auto pair = fresh_walls_.cbegin();
+    std::sort(found_walls_.begin(), found_walls_.end());
+    auto pair = found_walls_.cbegin();
     for (Block& block : blocks_) {
       block_walls_.clear();
-      for (; pair != fresh_walls_.cend() && pair->i < block.end_slot; ++pair) {
+      for (; pair != found_walls_.cend() && pair->i < block.end_slot; ++pair) {
         block_walls_.push_back(*pair);
       }
       block.walls.replace(block_walls_);
@@ -497,7 +496,7 @@ class NearList {
   int block_size_ = 1;
   std::vector<Block> blocks_;
   std::size_t across_ = 0;  // pairs across blocks
-  bool known_ = false;
+  bool listed_ = false;
   double time_ = 0;                    // of the last refresh [s]
   Vec<Dim> drift_ = Vec<Dim>::Zero();  // velocity of the frame [m/s]
   Eigen::VectorXd margin_;
@@ -507,8 +506,8 @@ class NearList {
   std::int64_t paid_ = 0;  // for amendments since the last refresh
   std::int64_t amended_ = 0;
   std::int64_t slow_ = 0;  // grains that left margins set by the floor since the last refresh
-  std::vector<Pair> fresh_, fresh_within_, fresh_across_;
-  std::vector<WallPair> fresh_walls_, block_walls_;
+  std::vector<Pair> found_, found_within_, found_across_;
+  std::vector<WallPair> found_walls_, block_walls_;
   double floor_ = 0.01;
   std::int64_t last_refresh_ = 0;
   std::int64_t refreshes_ = 0;

@@ -73,12 +73,13 @@ Ledger energy_ledger(const Simulation<Dim, Law, Motion, N>& sim) {
   ledger.kinetic = kinetic_energy(g);
   ledger.gravity = -sim.setting().gravity.dot(g.position * g.mass);
   sim.for_each_contact([&](Pair pair, const Touch<Dim>& touch, const auto&, const auto& memory) {
-    ledger.elastic += sim.laws().of(g.kind, pair.i, pair.j).elastic_energy(touch, memory);
+    ledger.elastic += sim.laws().of(g.material, pair.i, pair.j).elastic_energy(touch, memory);
   });
   sim.for_each_wall_contact(
       [&](WallPair pair, const Touch<Dim>& touch, const auto&, const auto& memory) {
-        const int kind = sim.walls()[static_cast<std::size_t>(pair.wall)].kind;
-        ledger.elastic += sim.laws().with_wall(g.kind, pair.i, kind).elastic_energy(touch, memory);
+        const int material = sim.walls()[static_cast<std::size_t>(pair.wall)].material;
+        ledger.elastic +=
+            sim.laws().with_wall(g.material, pair.i, material).elastic_energy(touch, memory);
       });
   ledger.wall_work = sim.flow().wall_work;
   ledger.dashpot = sim.flow().dashpot;

@@ -22,7 +22,7 @@ struct WallPair {
   auto operator<=>(const WallPair&) const = default;
 };
 
-/// Sorted pairs and, where the law remembers, one memory each. History survives a refresh by
+/// Sorted pairs and, where the law remembers, one memory each. History survives a repairs by
 /// merging two sorted lists; without memory nothing is stored and nothing merged.
 template <class P, class Memory>
 class PairTable {
@@ -35,41 +35,41 @@ class PairTable {
   Memory memory(std::size_t k) const {
     Memory m;
     if constexpr (kReals > 0) {
-      for (int r = 0; r < kReals; ++r) m[r] = part(r)[k];
+      for (int r = 0; r < kReals; ++r) m[r] = memory_row(r)[k];
     }
     return m;
   }
   void set_memory(std::size_t k, const Memory& m) {
     if constexpr (kReals > 0) {
-      for (int r = 0; r < kReals; ++r) part(r)[k] = m[r];
+      for (int r = 0; r < kReals; ++r) memory_row(r)[k] = m[r];
     }
   }
   /// Number r of all memories, side by side.
-  double* part(int r) { return memory_[static_cast<std::size_t>(r)].data(); }
-  const double* part(int r) const { return memory_[static_cast<std::size_t>(r)].data(); }
+  double* memory_row(int r) { return memory_[static_cast<std::size_t>(r)].data(); }
+  const double* memory_row(int r) const { return memory_[static_cast<std::size_t>(r)].data(); }
 
-  /// Puts `fresh` (sorted) in place of the pairs, with these memories.
-  void assign(std::vector<P> fresh, const std::vector<Memory>& memories) {
-    pairs_ = std::move(fresh);
+  /// Puts `pairs` (sorted) in place of its own, with these memories.
+  void assign(std::vector<P> pairs, const std::vector<Memory>& memories) {
+    pairs_ = std::move(pairs);
     for (auto& row : memory_) row.assign(pairs_.size(), 0.0);
     for (std::size_t k = 0; k < pairs_.size(); ++k) set_memory(k, memories[k]);
   }
 
-  /// Puts `fresh` (sorted) in place of the pairs, keeping the memory of those that stay; the old
-  /// pairs are left in `fresh`.
-  void replace(std::vector<P>& fresh) {
+  /// Exchanges its pairs for `pairs` (sorted), and keeps the memories of those that stay. The old
+  /// pairs are left in `pairs`.
+  void replace(std::vector<P>& pairs) {
     if constexpr (kReals > 0) {
-      for (auto& row : fresh_memory_) row.assign(fresh.size(), 0.0);
+      for (auto& row : next_memory_) row.assign(pairs.size(), 0.0);
       std::size_t old = 0;
-      for (std::size_t k = 0; k < fresh.size(); ++k) {
-        while (old < pairs_.size() && pairs_[old] < fresh[k]) ++old;
+      for (std::size_t k = 0; k < pairs.size(); ++k) {
+        while (old < pairs_.size() && pairs_[old] < pairs[k]) ++old;
         if (old == pairs_.size()) break;
-        if (pairs_[old] != fresh[k]) continue;
-        for (std::size_t r = 0; r < memory_.size(); ++r) fresh_memory_[r][k] = memory_[r][old];
+        if (pairs_[old] != pairs[k]) continue;
+        for (std::size_t r = 0; r < memory_.size(); ++r) next_memory_[r][k] = memory_[r][old];
       }
-      memory_.swap(fresh_memory_);
+      memory_.swap(next_memory_);
     }
-    pairs_.swap(fresh);
+    pairs_.swap(pairs);
   }
 
   /// Whether the pairs are sorted, each is there once, and each has a memory.
@@ -96,8 +96,8 @@ class PairTable {
   using Rows = std::array<std::vector<double>, static_cast<std::size_t>(kReals)>;
 
   std::vector<P> pairs_;
-  Rows memory_;        // of each pair a column
-  Rows fresh_memory_;  // scratch
+  Rows memory_;       // of each pair a column
+  Rows next_memory_;  // scratch
 };
 
 }  // namespace lagrain

@@ -147,9 +147,9 @@ class ReachList {
     }
     audit_pairs(defects);
     audit_guests(defects);
-    ReachList fresh;
-    fresh.list_edges(t);
-    if (fresh.first_edge_ != first_edge_ || fresh.edge_ends_ != edge_ends_) {
+    ReachList anew;
+    anew.list_edges(t);
+    if (anew.first_edge_ != first_edge_ || anew.edge_ends_ != edge_ends_) {
       defects.push_back("the edges are not those of T");
     }
     for (int k = 0; k < t.size(); ++k) {

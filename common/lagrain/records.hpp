@@ -78,7 +78,7 @@ void fetch_ahead(const Record& record) {
 }
 
 /// Bytes that a step reads and writes of one grain in this model: its records, and where the near
-/// list saw it last. Several kinds add one byte.
+/// list saw it last. Several materials add one byte.
 template <int Dim, Needs needs>
 constexpr std::size_t bytes_per_grain() {
   return sizeof(GrainRecord<Dim, needs>) + sizeof(LoadRecord<Dim, needs>) +

@@ -71,7 +71,7 @@ class Simulation {
   using Memory = typename Law::template Memory<Dim>;
 
   /// Evaluates the forces at time 0.
-  /// @throws ContractError if the time step is not safe (the message names the safe one), or a kind
+  /// @throws ContractError if the time step is not safe (the message names the safe one), or a material
   /// is not in the table of laws.
   Simulation(State grains, LawTable<Law> laws, std::vector<Wall<Dim>> walls, Setting<Dim> setting,
              N neighbourhood = {})
@@ -81,8 +81,8 @@ class Simulation {
         walls_(std::move(walls)),
         setting_(std::move(setting)),
         neighbourhood_(std::move(neighbourhood)),
-        kernel_(setting_.instructions, view_.kind.empty()) {
-    check_kinds();
+        kernel_(setting_.instructions, laws_.one_law() || view_.material.empty()) {
+    check_materials();
     const TimeScales scales = time_scales(view_, laws_, walls_);
     std::ostringstream message;
     message << "time step " << setting_.time_step << " s: the stiffest contact lasts "
@@ -162,7 +162,7 @@ class Simulation {
   bool near_list_holds() const {
     const Vec<Dim> shift = near_.shift(time());
     const State& g = grains();
-    if (!near_.fresh() || !near_.walls_hold(walls_, shift)) return false;
+    if (!near_.listed() || !near_.walls_hold(walls_, shift)) return false;
     for (int slot = 0; slot < count(); ++slot) {
       if (!near_.holds(slot, g.position.col(number(slot)), shift)) return false;
     }
@@ -191,7 +191,7 @@ class Simulation {
         const auto [touching, touch] = touch_of(body(g, pair.i), body(g, pair.j));
         if (!touching) continue;
         Memory memory = table.memory(k);
-        f(pair, touch, laws_.of(g.kind, pair.i, pair.j).respond(touch, memory, 0), memory);
+        f(pair, touch, laws_.of(g.material, pair.i, pair.j).respond(touch, memory, 0), memory);
       }
     });
   }
@@ -209,7 +209,7 @@ class Simulation {
             touch_of_wall(body(g, pair.i), g.mass[pair.i], distance, normal, wall.velocity);
         if (!touching) continue;
         Memory memory = block.walls.memory(k);
-        f(pair, touch, laws_.with_wall(g.kind, pair.i, wall.kind).respond(touch, memory, 0),
+        f(pair, touch, laws_.with_wall(g.material, pair.i, wall.material).respond(touch, memory, 0),
           memory);
       }
     }
@@ -259,7 +259,7 @@ class Simulation {
     records_.resize(index(g.size()));
     loads_.resize(index(g.size()));
     radius_.resize(g.size());
-    if (!g.kind.empty()) kinds_.resize(index(g.size()));
+    if (!laws_.one_law() && !g.material.empty()) materials_.resize(index(g.size()));
     for (int slot = 0; slot < g.size(); ++slot) {
       const int i = number(slot);
       Record& record = records_[index(slot)];
@@ -272,7 +272,7 @@ class Simulation {
         record.omega() = g.omega.col(i);
         record.at[Record::kInverseInertia] = g.inverse_inertia[i];
       }
-      if (!g.kind.empty()) kinds_[index(slot)] = g.kind[index(i)];
+      if (!materials_.empty()) materials_[index(slot)] = g.material[index(i)];
     }
     near_.reset(g.size(), std::max(kLeastBlock, (g.size() + kMostBlocks - 1) / kMostBlocks));
     strays_.resize(near_.blocks().size());
@@ -325,7 +325,7 @@ class Simulation {
     permute(records_);
     permute(loads_);
     permute(numbers_);
-    permute(kinds_);
+    permute(materials_);
     std::vector<int> slot_of(order.size());
     for (std::size_t k = 0; k < order.size(); ++k) {
       slot_of[index(order[k])] = static_cast<int>(k);
@@ -429,7 +429,7 @@ class Simulation {
   /// Also notes if the grain leaves its margin.
   void advance(Moving& grain, std::size_t block, int slot, int evaluation, const Vec<Dim>& shift) {
     grain.advance(evaluation, setting_.time_step);
-    if (near_.fresh() && !near_.holds(slot, grain.x, shift)) strays_[block].push_back(slot);
+    if (near_.listed() && !near_.holds(slot, grain.x, shift)) strays_[block].push_back(slot);
   }
 
   /// The grains of a block go on with the forces that act on them now.
@@ -465,7 +465,7 @@ class Simulation {
   /// Whether the near list holds where the grains and walls are at time t [s].
   void look_for_strays(double t) {
     near_holds_ =
-        near_.fresh() && near_.walls_hold(walls_, near_.shift(t)) &&
+        near_.listed() && near_.walls_hold(walls_, near_.shift(t)) &&
         std::all_of(strays_.begin(), strays_.end(), [](const auto& list) { return list.empty(); });
   }
 
@@ -476,7 +476,7 @@ class Simulation {
   void evaluate_forces(double t, const Then& then) {
     if (!near_holds_ || worth_narrowing()) refresh(t);
     const ContactScene<Dim, Law> scene{
-        records_.data(),         nullptr, &kinds_, &laws_, walls_.data(), force_step_,
+        records_.data(),         nullptr, &materials_, &laws_, walls_.data(), force_step_,
         setting_.largest_overlap};
     const std::size_t blocks = near_.blocks().size();
     parts_.resize(blocks);
@@ -498,11 +498,11 @@ class Simulation {
         if (measuring_) part.pair_seconds += seconds(Clock::now() - start);
       });
     }
-    fresh_.resize(index(setting_.threads));
+    new_loads_.resize(index(setting_.threads));
     for_each_block([&](std::size_t block, std::size_t thread) {
-      block_forces(scene, block, fresh_[thread]);
+      block_forces(scene, block, new_loads_[thread]);
       const auto start = measuring_ ? Clock::now() : Clock::time_point{};
-      move_on(block, fresh_[thread].data(), then);
+      move_on(block, new_loads_[thread].data(), then);
       if (measuring_) parts_[block].move_seconds = seconds(Clock::now() - start);
     });
 
@@ -588,7 +588,7 @@ class Simulation {
   template <class Velocity>
   bool amend(double t, Velocity&& velocity) {
     if constexpr (AmendableNeighbourhood<N, Dim>) {
-      if (!near_.fresh() || !near_.walls_hold(walls_, near_.shift(t))) return false;
+      if (!near_.listed() || !near_.walls_hold(walls_, near_.shift(t))) return false;
       all_strays_.clear();
       for (const auto& list : strays_) {
         all_strays_.insert(all_strays_.end(), list.begin(), list.end());
@@ -663,25 +663,29 @@ class Simulation {
     }
   }
 
-  void check_kinds() const {
-    const int kinds = laws_.kinds();
-    const std::string have = ", but the table of laws has " + std::to_string(kinds) + " kinds";
-    LAGRAIN_EXPECTS(kinds >= 1, "the table of laws is empty");
-    for (std::size_t i = 0; i < view_.kind.size(); ++i) {
-      LAGRAIN_EXPECTS(view_.kind[i] < kinds, "grain " + std::to_string(i) + " is of kind " +
-                                                 std::to_string(view_.kind[i]) + have);
+  void check_materials() const {
+    const int materials = laws_.materials();
+    const std::string have =
+        ", but the table of laws has " + std::to_string(materials) + " materials";
+    LAGRAIN_EXPECTS(materials >= 1, "the table of laws is empty");
+    if (laws_.one_law()) return;
+    for (std::size_t i = 0; i < view_.material.size(); ++i) {
+      LAGRAIN_EXPECTS(view_.material[i] < materials, "grain " + std::to_string(i) +
+                                                         " is of material " +
+                                                         std::to_string(view_.material[i]) + have);
     }
     for (const Wall<Dim>& wall : walls_) {
-      LAGRAIN_EXPECTS(wall.kind >= 0 && wall.kind < kinds,
-                      "wall " + wall.name + " is of kind " + std::to_string(wall.kind) + have);
+      LAGRAIN_EXPECTS(
+          wall.material >= 0 && wall.material < materials,
+          "wall " + wall.name + " is of material " + std::to_string(wall.material) + have);
     }
   }
 
   void check_conservative() const {
-    const auto kinds = static_cast<std::size_t>(laws_.kinds());
-    for (std::size_t k = 0; k < kinds * kinds; ++k) {
+    const auto materials = static_cast<std::size_t>(laws_.materials());
+    for (std::size_t k = 0; k < materials * materials; ++k) {
       LAGRAIN_EXPECTS(
-          laws_.between(k / kinds, k % kinds).conservative(),
+          laws_.between(k / materials, k % materials).conservative(),
           std::string(Motion::kName) + " integrates conservative scenes: restitution 1");
     }
     for (const Wall<Dim>& wall : walls_) {
@@ -706,9 +710,9 @@ class Simulation {
   mutable bool view_known_ = false;
   std::vector<int> numbers_;  // of the grains in the slots; empty if they are the slots
   std::vector<Record> records_;
-  std::vector<Load> loads_;               // by the forces that were evaluated last
-  std::vector<std::vector<Load>> fresh_;  // of a block that a thread is at
-  std::vector<std::uint8_t> kinds_;
+  std::vector<Load> loads_;                   // by the forces that were evaluated last
+  std::vector<std::vector<Load>> new_loads_;  // of a block that a thread is at
+  std::vector<std::uint8_t> materials_;
   Eigen::VectorXd radius_;
 
   LawTable<Law> laws_;

@@ -40,18 +40,19 @@ inline double largest_damped_phase(double damping_ratio) {
   return kFree / (std::sqrt(damped * damped + kFree) + damped);
 }
 
-/// Shortest collision and safe step over all pairs of kinds that occur, with each kind's lightest
-/// grain (the time grows with the mass; in Hertz's law it falls slowly with the radius, so grains
-/// of one kind are taken to share a density), and the walls. A piston yields, like a grain of its
-/// mass.
+/// Shortest collision and safe step over all pairs of materials that occur, with the lightest grain of each
+/// (the time grows with the mass; in Hertz's law it falls slowly with the radius, so grains of one
+/// material are taken to share a density), and the walls. A piston yields, like a grain of its mass.
+/// Where one law holds for all, all count as one material.
 template <int Dim, class Law, Needs needs>
 TimeScales time_scales(const Grains<Dim, needs>& g, const LawTable<Law>& laws,
                        const std::vector<Wall<Dim>>& walls) {
   std::map<std::size_t, int> lightest;
   for (int i = 0; i < g.size(); ++i) {
-    const std::size_t kind = g.kind.empty() ? 0 : g.kind[static_cast<std::size_t>(i)];
-    const auto [at, fresh] = lightest.try_emplace(kind, i);
-    if (!fresh && g.mass[i] < g.mass[at->second]) at->second = i;
+    const bool alike = laws.one_law() || g.material.empty();
+    const std::size_t material = alike ? 0 : g.material[static_cast<std::size_t>(i)];
+    const auto [at, inserted] = lightest.try_emplace(material, i);
+    if (!inserted && g.mass[i] < g.mass[at->second]) at->second = i;
   }
   TimeScales scales;
   const auto consider = [&](const Law& law, double m, double r) {
@@ -71,7 +72,7 @@ TimeScales time_scales(const Grains<Dim, needs>& g, const LawTable<Law>& laws,
     for (const Wall<Dim>& wall : walls) {
       const auto* piston = std::get_if<Piston<Dim>>(&wall.motion);
       const double m = piston ? 1 / (1 / g.mass[i] + 1 / piston->mass) : g.mass[i];
-      consider(laws.between(a, static_cast<std::size_t>(wall.kind)), m, g.radius[i]);
+      consider(laws.between(a, static_cast<std::size_t>(wall.material)), m, g.radius[i]);
     }
   }
   return scales;

@@ -72,7 +72,7 @@ struct Wall {
   Vec<Dim> point = Vec<Dim>::Zero();  ///< now: on the plane, the segment's end, on the axis [m]
   std::variant<HalfSpace<Dim>, WallSegment<Dim>, Cylinder<Dim>> shape;
   std::variant<Fixed, Steady<Dim>, Shake<Dim>, Piston<Dim>> motion = Fixed{};
-  int kind = 0;                          ///< row of the table of laws
+  int material = 0;                      ///< row of the table of laws
   Vec<Dim> home = Vec<Dim>::Zero();      ///< where it was at time 0 [m], for motions given in time
   Vec<Dim> velocity = Vec<Dim>::Zero();  ///< [m/s]
   Vec<Dim> force = Vec<Dim>::Zero();     ///< by the grains, in the last step [N]

@@ -180,8 +180,7 @@ class Placer {
   void add(Grain<Dim> grain, int material, int group) {
     const double density = scene_.materials[static_cast<std::size_t>(material)].density;
     grain.mass = density * grain_volume<Dim>(grain.radius, scene_.depth);
-    // Where all pairs share one law, materials differ in density alone: one kind is enough.
-    grain.kind = scene_.pairs.empty() ? 0 : material;
+    grain.material = material;
     occupied_.add(static_cast<int>(placed_.grains.size()), grain.position, grain.radius);
     placed_.grains.push_back(grain);
     placed_.material.push_back(material);

@@ -51,12 +51,8 @@ double push_apart(std::vector<Grain<Dim>>& grains, std::vector<Wall<Dim>> walls,
     grain.radius *= 1 + kSurplus;
     grain.velocity.setZero();
     grain.omega.setZero();
-    grain.kind = 0;
   }
-  for (Wall<Dim>& wall : walls) {
-    wall.motion = Fixed{};
-    wall.kind = 0;
-  }
+  for (Wall<Dim>& wall : walls) wall.motion = Fixed{};
   const LinearSpring spring{.stiffness = 1};
   auto state = make_grains<Dim, LinearSpring::needs>(soft);
   Setting<Dim> setting;

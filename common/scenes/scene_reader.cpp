@@ -456,7 +456,7 @@ class Reader {
     for (const Wall<Dim>& other : scene_.walls) {
       if (other.name == wall.name) s.fail(keys::kName, "a second \"" + wall.name + "\"");
     }
-    wall.kind = material;
+    wall.material = material;
     if (s.has(keys::kMotion)) read_motion(s.table(keys::kMotion), wall);
     scene_.walls.push_back(std::move(wall));
   }

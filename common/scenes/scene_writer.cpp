@@ -213,7 +213,7 @@ class Writer {
   void write_wall(const Wall<Dim>& wall) {
     one_of(keys::kWall);
     out_.add(keys::kName, std::string_view(wall.name));
-    out_.add(keys::kMaterial, material_name(wall.kind));
+    out_.add(keys::kMaterial, material_name(wall.material));
     std::visit(Overloaded{[&](const HalfSpace<Dim>& plane) {
                             out_.add(keys::kPoint, wall.home);
                             out_.add(keys::kNormal, plane.normal);

@@ -102,13 +102,9 @@ std::unique_ptr<Run<Dim>> make_run_of(const Scene<Dim>& scene, Placement<Dim> pl
   LawTable<Law> laws(law(scene.law),
                      scene.pairs.empty() ? 1 : static_cast<int>(scene.materials.size()));
   for (const PairLaw& pair : scene.pairs) laws.set(pair.a, pair.b, law(pair.law));
-  std::vector<Wall<Dim>> walls = scene.walls;
-  if (scene.pairs.empty()) {
-    for (Wall<Dim>& wall : walls) wall.kind = 0;
-  }
   auto grains = make_grains<Dim, Law::needs>(placement.grains);
 
-  const TimeScales scales = time_scales(grains, laws, walls);
+  const TimeScales scales = time_scales(grains, laws, scene.walls);
   Scene<Dim> resolved = scene;
   if (!(scene.time_step.seconds > 0)) {
     resolved.time_step.seconds = scene.time_step.fraction_of_contact * scales.contact;
@@ -123,8 +119,8 @@ std::unique_ptr<Run<Dim>> make_run_of(const Scene<Dim>& scene, Placement<Dim> pl
 
   const auto finish = [&]<class Motion>(Motion) -> std::unique_ptr<Run<Dim>> {
     return std::make_unique<SimulationRun<Dim, Law, Motion>>(
-        std::move(resolved), std::move(placement), std::move(grains), std::move(laws),
-        std::move(walls), scales, std::move(neighbourhood));
+        std::move(resolved), std::move(placement), std::move(grains), std::move(laws), scene.walls,
+        scales, std::move(neighbourhood));
   };
   switch (scene.integrator) {
     case IntegratorModel::symplectic_euler:

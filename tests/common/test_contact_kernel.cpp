@@ -24,15 +24,16 @@ struct Heap {
 
   std::vector<GrainRecord<Dim, needs>> grains;
   std::vector<LoadRecord<Dim, needs>> loads;
-  std::vector<std::uint8_t> kinds;
+  std::vector<std::uint8_t> materials;
   LawTable<Law> laws;
   std::vector<Wall<Dim>> walls;
   PairTable<Pair, Memory> pairs;
   PairTable<WallPair, Memory> wall_pairs;
 
-  Heap(int count, int kind_count) : grains(static_cast<std::size_t>(count)), loads(grains.size()) {
+  Heap(int count, int material_count)
+      : grains(static_cast<std::size_t>(count)), loads(grains.size()) {
     using R = GrainRecord<Dim, needs>;
-    Random random(static_cast<std::uint64_t>(count + 100 * kind_count));
+    Random random(static_cast<std::uint64_t>(count + 100 * material_count));
     const auto between = [&](double low, double high) { return random.uniform(low, high); };
     const int side = 4;
     for (int i = 0; i < count; ++i) {
@@ -49,7 +50,7 @@ struct Heap {
       if constexpr (needs.spin) {
         for (int d = 0; d < kSpinDim<Dim>; ++d) g.omega()[d] = between(-1, 1);
       }
-      if (kind_count > 1) kinds.push_back(static_cast<std::uint8_t>(i % kind_count));
+      if (material_count > 1) materials.push_back(static_cast<std::uint8_t>(i % material_count));
     }
     if (count > 8) grains[8].position() = grains[7].position();
 
@@ -59,15 +60,15 @@ struct Heap {
                             .friction = 0.2,
                             .tangential_damping_ratio = 0.3});
     };
-    laws = LawTable<Law>(law(1e4), kind_count);
-    if (kind_count > 1) {
+    laws = LawTable<Law>(law(1e4), material_count);
+    if (material_count > 1) {
       laws.set(0, 1, law(2e4));
       laws.set(1, 1, law(5e4));
     }
     walls.push_back(
         Wall<Dim>::half_space("floor", Vec<Dim>::Constant(-0.9), Vec<Dim>::Unit(Dim - 1)));
     walls.push_back(Wall<Dim>::segment("bar", -10 * Vec<Dim>::Unit(0), 10 * Vec<Dim>::Unit(0)));
-    walls.back().kind = kind_count - 1;
+    walls.back().material = material_count - 1;
     walls.back().velocity = 0.1 * Vec<Dim>::Unit(0);
 
     std::vector<Pair> list;
@@ -98,7 +99,7 @@ struct Heap {
   }
 
   ContactScene<Dim, Law> scene() {
-    return {grains.data(), loads.data(), &kinds, &laws, walls.data(), 1e-4, 0.01};
+    return {grains.data(), loads.data(), &materials, &laws, walls.data(), 1e-4, 0.01};
   }
   Body<Dim, needs> body(int i) const { return read_bodies<double>(grains.data(), {i}); }
 };
@@ -131,20 +132,20 @@ TEST_SUITE("contact_kernel") {
   TEST_CASE_TEMPLATE("every instruction set gives the bits of the scalar path", C, KERNEL_CASES) {
     constexpr int Dim = C::Dim;
     using Law = typename C::Law;
-    for (const auto& [kind_count, listing] : {std::pair{1, Listing::tight},
-                                              {1, Listing::loose},
-                                              {2, Listing::tight},
-                                              {2, Listing::loose}}) {
+    for (const auto& [material_count, listing] : {std::pair{1, Listing::tight},
+                                                  {1, Listing::loose},
+                                                  {2, Listing::tight},
+                                                  {2, Listing::loose}}) {
       // Counts that fill the lanes and the stretches that are searched, and counts that do not.
       for (const int count : {2, 6, 9, 30, 61, 250}) {
-        CAPTURE(kind_count);
+        CAPTURE(material_count);
         CAPTURE(static_cast<int>(listing));
         CAPTURE(count);
-        const auto run = [&, kinds = kind_count, how = listing](
+        const auto run = [&, several = material_count > 1, how = listing](
                              InstructionSet set, Heap<Dim, Law>& heap,
                              std::vector<PairLoad<Dim, Law::needs>>& kept,
                              std::vector<Vec<Dim>>& wall_forces) {
-          const ContactKernel<Dim, Law> kernel(set, kinds == 1);
+          const ContactKernel<Dim, Law> kernel(set, !several);
           const auto scene = heap.scene();
           wall_forces.assign(2, Vec<Dim>::Zero());
           kept.resize(heap.pairs.size());
@@ -158,7 +159,7 @@ TEST_SUITE("contact_kernel") {
           }
           return tallies;
         };
-        Heap<Dim, Law> reference(count, kind_count);
+        Heap<Dim, Law> reference(count, material_count);
         std::vector<PairLoad<Dim, Law::needs>> reference_kept;
         std::vector<Vec<Dim>> reference_walls;
         const auto expected =
@@ -166,7 +167,7 @@ TEST_SUITE("contact_kernel") {
 
         for (const InstructionSet set : instruction_sets()) {
           CAPTURE(static_cast<int>(set));
-          Heap<Dim, Law> heap(count, kind_count);
+          Heap<Dim, Law> heap(count, material_count);
           std::vector<PairLoad<Dim, Law::needs>> kept;
           std::vector<Vec<Dim>> walls;
           const auto tallies = run(set, heap, kept, walls);
@@ -232,12 +233,12 @@ TEST_SUITE("contact_kernel") {
     constexpr int Dim = C::Dim;
     using Law = typename C::Law;
     using Load = LoadRecord<Dim, Law::needs>;
-    for (const int kind_count : {1, 2}) {
-      CAPTURE(kind_count);
-      Heap<Dim, Law> heap(61, kind_count);
+    for (const int material_count : {1, 2}) {
+      CAPTURE(material_count);
+      Heap<Dim, Law> heap(61, material_count);
       const Heap<Dim, Law> before = heap;
       std::vector<PairLoad<Dim, Law::needs>> kept(heap.pairs.size());
-      const ContactKernel<Dim, Law> kernel(instruction_sets().back(), kind_count == 1);
+      const ContactKernel<Dim, Law> kernel(instruction_sets().back(), material_count == 1);
 
       const Tally tally =
           kernel.pairs(heap.scene(), heap.pairs, 0, heap.pairs.size(), Listing::tight, kept.data());
@@ -253,7 +254,7 @@ TEST_SUITE("contact_kernel") {
         if (touching) {
           ++touching_count;
           const auto response =
-              before.laws.of(before.kinds, i, j).respond(touch, memory, heap.scene().time_step);
+              before.laws.of(before.materials, i, j).respond(touch, memory, heap.scene().time_step);
           force = response.force;
           dashpot += response.dashpot_loss;
           friction += response.friction_loss;

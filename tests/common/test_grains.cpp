@@ -105,9 +105,9 @@ TEST_SUITE("grains") {
       refused([&](Grain<Dim>& g) { g.velocity[0] = bad; });
       refused([&](Grain<Dim>& g) { g.omega[0] = bad; });
     }
-    // The kind is stored in a byte.
-    refused([](Grain<Dim>& g) { g.kind = -1; });
-    refused([](Grain<Dim>& g) { g.kind = 256; });
+    // The material is stored in a byte.
+    refused([](Grain<Dim>& g) { g.material = -1; });
+    refused([](Grain<Dim>& g) { g.material = 256; });
     // "It stays": a pinned grain that moves would drive the others without appearing in the ledger.
     refused([](Grain<Dim>& g) { g.pinned = true, g.velocity[0] = 1; });
     refused([](Grain<Dim>& g) { g.pinned = true, g.omega[0] = 1; });

@@ -332,11 +332,11 @@ TEST_SUITE("simulation") {
   TEST_CASE_TEMPLATE("grains keep their numbers when their slots are sorted anew", C,
                      Case<2, FrictionalSpring>, Case<3, FrictionalSpring>) {
     constexpr int Dim = C::Dim;
-    // A gas of many sizes and two kinds that mixes while the slots are sorted.
+    // A gas of many sizes and two materials that mixes while the slots are sorted.
     Random random(5);
     auto packed = lattice<Dim>({.count = 1500, .spacing = 1.5, .speed = 3}, random);
     for (std::size_t i = 0; i < packed.grains.size(); ++i) {
-      packed.grains[i].kind = static_cast<int>(i % 2);
+      packed.grains[i].material = static_cast<int>(i % 2);
     }
     const LawTable<FrictionalSpring> laws(make_law<FrictionalSpring>(kGravel), 2);
     const auto build = [&]<class N>(N neighbourhood, int threads) {
@@ -375,16 +375,16 @@ TEST_SUITE("simulation") {
     CHECK(reported == expected);
   }
 
-  TEST_CASE_TEMPLATE("a kind that the table of laws lacks is refused", C, Case<2, LinearSpring>,
+  TEST_CASE_TEMPLATE("a material that the table of laws lacks is refused", C, Case<2, LinearSpring>,
                      Case<3, LinearSpring>) {
     constexpr int Dim = C::Dim;
     const LawTable<LinearSpring> laws(make_law<LinearSpring>({}), 2);
     Setting<Dim> setting;
     setting.time_step = 1e-5;
     Grain<Dim> odd = unit<Dim>(0);
-    odd.kind = 2;
+    odd.material = 2;
     auto wall = Wall<Dim>::half_space("floor", -5 * up<Dim>(), up<Dim>());
-    wall.kind = 2;
+    wall.material = 2;
     const auto build = [&](const Grain<Dim>& g, const LawTable<LinearSpring>& table,
                            const std::vector<Wall<Dim>>& walls) {
       return Sim<Dim, LinearSpring>(make_grains<Dim, LinearSpring::needs>({g}), table, walls,
@@ -392,10 +392,12 @@ TEST_SUITE("simulation") {
     };
 
     CHECK_NOTHROW(build(unit<Dim>(0), laws, {}));
-    CHECK_THROWS_WITH_AS(build(odd, laws, {}), doctest::Contains("grain 0 is of kind 2"),
+    CHECK_THROWS_WITH_AS(build(odd, laws, {}), doctest::Contains("grain 0 is of material 2"),
                          ContractError);
     CHECK_THROWS_WITH_AS(build(unit<Dim>(0), laws, {wall}), doctest::Contains("wall floor"),
                          ContractError);
     CHECK_THROWS_AS(build(unit<Dim>(0), {}, {}), ContractError);
+    // A table of one law holds for all materials.
+    CHECK_NOTHROW(build(odd, LawTable(laws.between(0, 0)), {wall}));
   }
 }

@@ -16,11 +16,11 @@ using namespace lagrain::test;
 namespace {
 
 template <int Dim>
-Grain<Dim> grain(double mass, int kind = 0) {
+Grain<Dim> grain(double mass, int material = 0) {
   Grain<Dim> g;
   g.radius = 1;
   g.mass = mass;
-  g.kind = kind;
+  g.material = material;
   return g;
 }
 
@@ -51,14 +51,14 @@ TEST_SUITE("time_step") {
     CHECK(std::abs(u * u + 8 * 5 * u - 1) < 1e-14);
   }
 
-  TEST_CASE("every pair of kinds counts with its own law, walls with theirs") {
+  TEST_CASE("every pair of materials counts with its own law, walls with theirs") {
     const auto g = make_grains<3, LinearSpring::needs>({grain<3>(1, 0), grain<3>(4, 1)});
     LawTable<LinearSpring> laws(make_law<LinearSpring>({.stiffness = 1}), 3);
     const auto contact = [&](std::vector<Wall<3>> walls) {
       return time_scales(g, laws, walls).contact / std::numbers::pi;
     };
     auto wall = Wall<3>::half_space("floor", Vec<3>::Zero(), up<3>());
-    wall.kind = 2;
+    wall.material = 2;
 
     CHECK(relative_error(contact({}), std::sqrt(0.5 / 1)) < 1e-14);  // the light pair
     laws.set(0, 1, make_law<LinearSpring>({.stiffness = 100}));
@@ -66,6 +66,11 @@ TEST_SUITE("time_step") {
     laws.set(1, 2, make_law<LinearSpring>({.stiffness = 1e4}));
     CHECK(relative_error(contact({}), std::sqrt(0.8 / 100)) < 1e-14);  // no wall, no matter
     CHECK(relative_error(contact({wall}), std::sqrt(4 / 1e4)) < 1e-14);
+
+    // Where one law holds for all, the lightest grain alone counts.
+    const LawTable<LinearSpring> one(make_law<LinearSpring>({.stiffness = 1}));
+    CHECK(relative_error(time_scales(g, one, std::vector{wall}).contact / std::numbers::pi,
+                         std::sqrt(0.5 / 1)) < 1e-14);
   }
 
   TEST_CASE_TEMPLATE("no pair of one material collides faster than the named time", C,

@@ -264,12 +264,6 @@ Followed<Dim> leaping() {
   return followed;
 }
 
-#ifdef LAGRAIN_AUDIT
-constexpr bool kAudited = true;  ///< after every update
-#else
-constexpr bool kAudited = false;
-#endif
-
 // ---- Planting ----------------------------------------------------------------------------------
 
 void check_names(const std::string& report, const std::string& error) {

@@ -149,15 +149,11 @@ TEST_SUITE("placement") {
     CHECK(placed.group[1] == 0);
   }
 
-  TEST_CASE("materials with one law for all are one kind; pairs of materials make several") {
-    Scene<2> scene = parse_scene<2>(kHeap, "s.toml");
-    CHECK(place_grains(scene).grains.back().kind == 0);
-
-    scene = parse_scene<2>(kHeap + "[[pair]]\nbetween = [\"rock\", \"gravel\"]\nfriction = 0.1\n",
-                           "s.toml");
-
-    CHECK(place_grains(scene).grains.front().kind == 0);
-    CHECK(place_grains(scene).grains.back().kind == 1);
+  TEST_CASE("grains have the material that the scene names") {
+    const Scene<2> scene = parse_scene<2>(kHeap, "s.toml");
+    const auto placed = place_grains(scene);
+    CHECK(placed.grains.front().material == 0);
+    CHECK(placed.grains.back().material == 1);
   }
 
   TEST_CASE("a region too small for a lattice says how many grains it held") {

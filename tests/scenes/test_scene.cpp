@@ -249,7 +249,7 @@ TEST_SUITE("scene") {
     for (std::size_t k = 0; k < names.size(); ++k) {
       const Wall<Dim>& wall = scene.walls[2 + k];
       CHECK(wall.name == names[k]);
-      CHECK(wall.kind == 1);
+      CHECK(wall.material == 1);
       const auto d = static_cast<Eigen::Index>(k / 2);
       const double at = k % 2 == 0 ? (d == Dim - 1 ? -2 : -1) : 3;
       CHECK(wall.foot(inside).distance == std::abs(1 - at));

@@ -119,7 +119,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Fill<Dim>> fills;
   std::vector<PlacedGrain<Dim>> grains;
-  std::vector<Wall<Dim>> walls;  ///< `kind` is the material
+  std::vector<Wall<Dim>> walls;  ///<
   OutputPlan output;
 
   /// "file:line: key: message", with what is known of it.
