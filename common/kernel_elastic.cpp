@@ -1,4 +1,4 @@
-#include <lagrain/contact_kernel.hpp>
+#include <lagrain/compiled_kernels.hpp>
 
 namespace lagrain {
 

@@ -3,6 +3,7 @@
 /// Beds of grains for the benchmark and the speed report: settled, of like and of unlike sizes,
 /// shaken, collapsing, hit.
 
+#include <lagrain/compiled_kernels.hpp>
 #include <lagrain/cundall_strack.hpp>
 #include <lagrain/grains.hpp>
 #include <lagrain/hooke.hpp>

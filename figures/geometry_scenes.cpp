@@ -2,6 +2,7 @@
 
 #include <lagrain/all_pairs.hpp>
 #include <lagrain/audit.hpp>
+#include <lagrain/compiled_kernels.hpp>
 #include <lagrain/cundall_strack.hpp>
 #include <lagrain/hooke.hpp>
 #include <lagrain/observe.hpp>

@@ -3,6 +3,7 @@
 /// Pushes overlapping grains apart. Included by placement.cpp alone.
 
 #include <lagrain/cell_grid.hpp>
+#include <lagrain/compiled_kernels.hpp>
 #include <lagrain/hooke.hpp>
 #include <lagrain/simulation.hpp>
 

@@ -2,6 +2,7 @@
 /// @file
 /// Private to the sources of runs: the one implementation of Run, templated on the model.
 
+#include <lagrain/compiled_kernels.hpp>
 #include <lagrain/contact_laws.hpp>
 #include <lagrain/integrator.hpp>
 #include <lagrain/numbers.hpp>

@@ -3,6 +3,7 @@
 /// Small scenes that many tests share: laws by their measurable properties, pairs, boxes, packings.
 
 #include <lagrain/all_pairs.hpp>
+#include <lagrain/compiled_kernels.hpp>
 #include <lagrain/cundall_strack.hpp>
 #include <lagrain/hertz.hpp>
 #include <lagrain/hooke.hpp>

@@ -1,0 +1,177 @@
+#pragma once
+/// @file
+/// Where the grains of a simulation lie in memory, and how they are found by number.
+
+#include <lagrain/check.hpp>
+#include <lagrain/grains.hpp>
+#include <lagrain/records.hpp>
+#include <lagrain/spatial_order.hpp>
+#include <lagrain/vec.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+namespace lagrain {
+
+/// Grains in *slots*: records in the order of Hilbert's curve, so that neighbours in space are
+/// neighbours in memory. They get new slots when they have mixed. Outside, everything speaks of the
+/// grains' numbers, which never change.
+template <int Dim, Needs needs>
+class GrainStore {
+ public:
+  using Record = GrainRecord<Dim, needs>;
+  using Load = LoadRecord<Dim, needs>;
+
+  /// @param with_materials  whether materials matter: more than one law acts
+  GrainStore(Grains<Dim, needs> grains, bool with_materials)
+      : by_number_(std::move(grains)),
+        records_(index(by_number_.size())),
+        loads_(records_.size()),
+        radius_(by_number_.size()) {
+    const Grains<Dim, needs>& g = by_number_;
+    if (g.size() > kSortFrom && g.position.allFinite()) numbers_ = spatial_order<Dim>(g.position);
+    if (with_materials && !g.material.empty()) materials_.resize(records_.size());
+    for (int slot = 0; slot < g.size(); ++slot) {
+      const int i = number(slot);
+      Record& record = records_[index(slot)];
+      record.position() = g.position.col(i);
+      record.velocity() = g.velocity.col(i);
+      record.at[Record::kRadius] = radius_[slot] = g.radius[i];
+      record.at[Record::kInverseMass] = g.inverse_mass[i];
+      loads_[index(slot)].at[Load::kMass] = g.mass[i];
+      if constexpr (needs.spin) {
+        record.omega() = g.omega.col(i);
+        record.at[Record::kInverseInertia] = g.inverse_inertia[i];
+      }
+      if (!materials_.empty()) materials_[index(slot)] = g.material[index(i)];
+    }
+  }
+
+  int count() const { return static_cast<int>(records_.size()); }
+  /// The number of the grain in a slot.
+  int number(int slot) const { return numbers_.empty() ? slot : numbers_[index(slot)]; }
+
+  // By slot.
+  Record& record(int slot) { return records_[index(slot)]; }
+  const Record& record(int slot) const { return records_[index(slot)]; }
+  const std::vector<Record>& records() const { return records_; }
+  /// The forces that were evaluated last.
+  Load& load(int slot) { return loads_[index(slot)]; }
+  const Load& load(int slot) const { return loads_[index(slot)]; }
+  const Eigen::VectorXd& radius() const { return radius_; }
+  /// Empty where materials do not matter.
+  const std::vector<std::uint8_t>& materials() const { return materials_; }
+  Columns<Dim> places() const {
+    Columns<Dim> x(Dim, count());
+    for (int slot = 0; slot < count(); ++slot) x.col(slot) = record(slot).position();
+    return x;
+  }
+
+  /// All grains as they are now, by number. Put together when asked for after outdate().
+  const Grains<Dim, needs>& by_number() const {
+    if (!by_number_is_known_) put_together();
+    return by_number_;
+  }
+  /// What never changes, by number, is there without being put together.
+  const Eigen::VectorXd& radii() const { return by_number_.radius; }
+  const Eigen::VectorXd& masses() const { return by_number_.mass; }
+  /// The records have changed, or are about to.
+  void outdate() { by_number_is_known_ = false; }
+
+  /// Whether slots are looked at before a step. The steps are fixed and places alone decide, so that
+  /// all neighbourhoods do the same.
+  static bool sort_is_due(std::int64_t step) {
+    return step % kStepsBetweenSorts == kStepsBetweenSorts - 1;
+  }
+  /// Whether there are so many grains that their order matters.
+  bool is_sorted() const { return count() > kSortFrom; }
+  /// Gives the grains new slots if neighbours in space lie far apart in memory.
+  /// @returns the new slot of each old one; empty if all stay where they are
+  /// @pre all places are finite
+  std::vector<int> sort_if_mixed() {
+    const Columns<Dim> x = places();
+    const auto way = [&](auto&& slot_at) {
+      double length = 0;
+      for (int k = 1; k < count(); ++k) {
+        length += (x.col(slot_at(k)) - x.col(slot_at(k - 1))).norm();
+      }
+      return length;
+    };
+    const std::vector<int> order = spatial_order<Dim>(x);
+    if (way([](int k) { return k; }) <= kMixed * way([&](int k) { return order[index(k)]; })) {
+      return {};
+    }
+    const auto permute = [&](auto& list) {
+      if (list.empty()) return;
+      auto sorted = list;
+      for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = list[index(order[k])];
+      list.swap(sorted);
+    };
+    permute(records_);
+    permute(loads_);
+    permute(numbers_);
+    permute(materials_);
+    std::vector<int> slot_of(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      slot_of[index(order[k])] = static_cast<int>(k);
+      radius_[static_cast<Eigen::Index>(k)] = records_[k].radius();
+    }
+    return slot_of;
+  }
+
+  /// @throws SimulationError if a place or velocity is not a number; it names the time t [s]
+  void expect_finite(double t) const {
+    for (int slot = 0; slot < count(); ++slot) {
+      if (record(slot).position().allFinite() && record(slot).velocity().allFinite()) continue;
+      std::ostringstream message;
+      message << "t = " << t << " s: grain " << number(slot)
+              << " has a place or velocity that is not a number; a smaller time step would help";
+      throw SimulationError(message.str());
+    }
+  }
+
+ private:
+  /// Below this number all grains fit into the cache in any order. Half or twice as many changes no
+  /// time that can be measured.
+  static constexpr int kSortFrom = 1024;
+  /// Sorting takes as long as a few steps. Five times as rare is still often enough for grains that
+  /// flow; five times as often is still below a thousandth of a run.
+  static constexpr std::int64_t kStepsBetweenSorts = 10000;
+  /// Slots are put in order again when the way through all grains is longer by this factor. Grains
+  /// that only rattle stay below it. At 1 all would be sorted each time, at 2 a flow would be slower
+  /// for a while.
+  static constexpr double kMixed = 1.3;
+
+  template <class I>
+  static std::size_t index(I i) {
+    return static_cast<std::size_t>(i);
+  }
+
+  void put_together() const {
+    Grains<Dim, needs>& g = by_number_;
+    for (int slot = 0; slot < count(); ++slot) {
+      const int i = number(slot);
+      g.position.col(i) = record(slot).position();
+      g.velocity.col(i) = record(slot).velocity();
+      g.force.col(i) = load(slot).force();
+      if constexpr (needs.spin) {
+        g.omega.col(i) = record(slot).omega();
+        g.torque.col(i) = load(slot).torque();
+      }
+    }
+    by_number_is_known_ = true;
+  }
+
+  mutable Grains<Dim, needs> by_number_;
+  mutable bool by_number_is_known_ = true;
+  std::vector<int> numbers_;  // of the grains in the slots; empty if they are the slots
+  std::vector<Record> records_;
+  std::vector<Load> loads_;
+  std::vector<std::uint8_t> materials_;
+  Eigen::VectorXd radius_;
+};
+
+}  // namespace lagrain

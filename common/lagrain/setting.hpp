@@ -1,0 +1,36 @@
+#pragma once
+/// @file
+/// What a simulation is told besides its grains, walls and laws, and what it counts.
+
+#include <lagrain/contact_kernel.hpp>
+#include <lagrain/vec.hpp>
+
+namespace lagrain {
+
+/// What is the same for all grains.
+template <int Dim>
+struct Setting {
+  Vec<Dim> gravity = Vec<Dim>::Zero();  ///< [m/s^2]
+  double time_step = 0;                 ///< [s]
+  double largest_overlap = 0.3;         ///< of the smaller radius; beyond it the run stops [-]
+  int threads = 1;                      ///< that share a step; results do not depend on it
+  InstructionSet instructions = instruction_sets().back();  ///< nor on this
+};
+
+/// Energy that has come and gone since the start [J].
+struct EnergyFlow {
+  double wall_work = 0;  ///< by moving walls on the grains
+  double dashpot = 0;    ///< taken by normal dashpots
+  double friction = 0;   ///< taken by friction
+};
+
+/// Wall-clock time spent so far [s]. What is done once per step is measured only if asked for.
+struct PhaseTimes {
+  double refresh = 0;  ///< of the near list, the triangulation's updates included
+  // The others are shared by the threads: these are means over them.
+  double integration = 0;  ///< with the test whether the near list still holds
+  double pairs = 0;        ///< contacts between grains
+  double walls = 0;        ///< contacts with walls
+};
+
+}  // namespace lagrain
