@@ -21,14 +21,39 @@ namespace lagrain {
 /// the same sites.
 ///
 /// Vertices at infinity have negative ids; notes on their edges are ignored. A list that was never
-/// found ignores all notes. To ask is to write: not safe for several threads.
+/// found ignores all notes.
 class EdgeList {
  public:
   using Edge = std::array<int, 2>;  ///< two sites, the lower id first
 
-  std::span<const Edge> all() const {
-    settle();
+  /// Brings the list up to date.
+  /// @returns all edges, sorted; good until the next note
+  std::span<const Edge> settle() {
+    all_new_ = true;
+    if (notes_.empty()) return edges_;
+    std::sort(notes_.begin(), notes_.end());
+    next_.clear();
+    next_.reserve(edges_.size() + notes_.size());
+    merge(
+        notes_, [&](auto first, auto last) { next_.insert(next_.end(), first, last); },
+        [&](const Edge& edge) { next_.push_back(edge); });
+    edges_.swap(next_);
+    notes_.clear();
     return edges_;
+  }
+
+  /// Calls f(i, j) for every edge, sorted. Changes nothing: a list with many notes is read faster
+  /// after settle().
+  template <class F>
+  void for_each(F&& f) const {
+    std::vector<std::uint64_t> notes = notes_;
+    std::sort(notes.begin(), notes.end());
+    merge(
+        notes,
+        [&](auto first, auto last) {
+          for (; first != last; ++first) f((*first)[0], (*first)[1]);
+        },
+        [&](const Edge& edge) { f(edge[0], edge[1]); });
   }
 
   /// To be called before and after the notes of an update.
@@ -41,11 +66,11 @@ class EdgeList {
     if (notes_.size() > edges_.size() / 4) settle();
   }
   /// Calls f(i, j) for the edges made since begin_update(), maybe more than once, and maybe for
-  /// some that are gone again; for all edges if they were found anew, or asked for, since then.
+  /// some that are gone again; for all edges if the list was found anew, or settled, since then.
   template <class F>
   void for_each_new(F&& f) const {
     if (all_new_) {
-      for (const auto& [i, j] : all()) f(i, j);
+      for_each(f);
       return;
     }
     for (std::size_t k = first_new_; k < notes_.size(); ++k) {
@@ -105,23 +130,19 @@ class EdgeList {
   }
 
   /// Keeps the edges as they are before an update, so that audit() can tell which are new.
-  void remember() {
-    const EdgeList settled(*this);
-    before_.emplace(settled.all().begin(), settled.all().end());
-  }
+  void remember() { before_ = edges(); }
 
   /// What is wrong with the list, or with what it tells of new edges if remember() was called after
-  /// begin_update(); empty if nothing is. The list is not settled by that.
+  /// begin_update(); empty if nothing is.
   /// @param found  the edges, found from nothing
   std::string audit(const EdgeList& found) const {
     if (!live_ && !found.edges_.empty()) return "the list of edges knows nothing of updates";
-    const EdgeList settled(*this), telling(*this);
-    if (!std::ranges::equal(settled.all(), found.all())) return "the list of edges is out of date";
+    if (edges() != found.edges_) return "the list of edges is out of date";
     if (!before_) return {};
     std::vector<Edge> told, made;
-    telling.for_each_new([&](int i, int j) { told.push_back({i, j}); });
+    for_each_new([&](int i, int j) { told.push_back({i, j}); });
     std::sort(told.begin(), told.end());
-    std::ranges::set_difference(found.all(), *before_, std::back_inserter(made));
+    std::ranges::set_difference(found.edges_, *before_, std::back_inserter(made));
     if (!std::ranges::includes(told, made)) return "an edge is not told to be new";
     return {};
   }
@@ -145,27 +166,29 @@ class EdgeList {
     }
   }
 
-  void settle() const {
-    all_new_ = true;
-    if (notes_.empty()) return;
-    std::sort(notes_.begin(), notes_.end());
-    next_.clear();
-    next_.reserve(edges_.size() + notes_.size());
+  /// The edges as sorted notes leave them, in increasing order: run(first, last) for those of
+  /// edges_ that stay, and made(edge) for those that are new.
+  template <class Run, class Made>
+  void merge(const std::vector<std::uint64_t>& notes, Run&& run, Made&& made) const {
     auto old = edges_.cbegin();
-    for_each_change(notes_.cbegin(), notes_.cend(), [&](std::uint64_t key, int count) {
+    for_each_change(notes.cbegin(), notes.cend(), [&](std::uint64_t key, int count) {
       const Edge edge = edge_of(key);
       const auto place = std::lower_bound(old, edges_.cend(), edge);
-      next_.insert(next_.end(), old, place);
+      run(old, place);
       old = place;
       if (count > 0) {
-        next_.push_back(edge);
+        made(edge);
       } else {
         ++old;
       }
     });
-    next_.insert(next_.end(), old, edges_.cend());
-    edges_.swap(next_);
-    notes_.clear();
+    run(old, edges_.cend());
+  }
+
+  std::vector<Edge> edges() const {
+    std::vector<Edge> list;
+    for_each([&](int i, int j) { list.push_back({i, j}); });
+    return list;
   }
 
   /// One number that sorts by edge; the lowest bit tells which kind of note it is.
@@ -176,9 +199,10 @@ class EdgeList {
     notes_.push_back((i << 32 | j) << 1 | gone);
   }
 
-  mutable std::vector<Edge> edges_, next_;
-  mutable std::vector<std::uint64_t> notes_;
-  mutable bool all_new_ = true;
+  std::vector<Edge> edges_;
+  std::vector<Edge> next_;  // scratch
+  std::vector<std::uint64_t> notes_;
+  bool all_new_ = true;
   std::size_t first_new_ = 0;
   bool live_ = false;
   std::optional<std::vector<Edge>> before_;

@@ -96,12 +96,12 @@ class MovingSites {
   std::span<const int> hidden() const { return hidden_; }
 
   /// The finite edges, sorted.
-  std::span<const EdgeList::Edge> edges() const { return edges_.all(); }
+  std::span<const EdgeList::Edge> edges() { return edges_.settle(); }
 
   /// Calls f(i, j) once for each finite edge, i < j, in increasing order.
   template <class F>
   void for_each_edge(F&& f) const {
-    for (const auto& [i, j] : edges()) f(i, j);
+    edges_.for_each(f);
   }
 
   /// Calls f(i, j), i < j, for each edge that the last update made: maybe more than once, and maybe

@@ -54,7 +54,7 @@ class ReachList {
   /// @param t     regular for the balls
   /// @param ball  ball(i)
   template <RegularTriangulation<Dim> T, class BallOf>
-  void build(const T& t, BallOf&& ball) {
+  void build(T& t, BallOf&& ball) {
     const int n = t.size();
     balls_.resize(index(n));
     for (int i = 0; i < n; ++i) balls_[index(i)] = ball(i);
@@ -64,7 +64,7 @@ class ReachList {
     more_.resize(index(n));
     for (auto& list : more_) list.clear();
     added_.clear();
-    list_edges(t);
+    list_edges(t.edges(), n);
     first_guest_.assign(index(n), -1);
     guests_.clear();
     widest_ = 0;
@@ -148,7 +148,9 @@ class ReachList {
     audit_pairs(defects);
     audit_guests(defects);
     ReachList anew;
-    anew.list_edges(t);
+    std::vector<EdgeList::Edge> edges;
+    t.for_each_edge([&](int i, int j) { edges.push_back({i, j}); });
+    anew.list_edges(edges, t.size());
     if (anew.first_edge_ != first_edge_ || anew.edge_ends_ != edge_ends_) {
       defects.push_back("the edges are not those of T");
     }
@@ -322,10 +324,8 @@ class ReachList {
   }
 
   /// The ends of the edges at each site, side by side.
-  template <RegularTriangulation<Dim> T>
-  void list_edges(const T& t) {
-    const auto edges = t.edges();
-    first_edge_.assign(index(t.size()) + 2, 0);
+  void list_edges(std::span<const EdgeList::Edge> edges, int sites) {
+    first_edge_.assign(index(sites) + 2, 0);
     for (const auto& edge : edges) {
       for (const int i : edge) ++first_edge_[index(i) + 2];
     }

@@ -52,8 +52,8 @@ concept RegularTriangulation = requires(T t, const T ct, std::span<const int> mo
   ct.for_each_neighbour(int{}, [](int) {});
   // Those of the last update.
   ct.for_each_new_edge(visit);
-  // Sorted.
-  { ct.edges() } -> std::same_as<std::span<const EdgeList::Edge>>;
+  // All edges, sorted.
+  { t.edges() } -> std::same_as<std::span<const EdgeList::Edge>>;
   { ct.hidden() } -> std::convertible_to<std::span<const int>>;
   { ct.size() } -> std::convertible_to<int>;
   { ct.site(int{}) } -> std::same_as<Vec<Dim>>;

@@ -249,9 +249,9 @@ TEST_SUITE("triangulation_neighbourhood") {
         const auto& t = found.triangulation();
         REQUIRE(t.audit().empty());
         if (found.cost().searched == 0) {
-          for (const auto& [a, b] : t.edges()) {
+          t.for_each_edge([&](int a, int b) {
             REQUIRE((t.site(a) - t.site(b)).squaredNorm() > t.weight(a) + t.weight(b));
-          }
+          });
         }
         cloud.x += 0.05 * velocity;
       }

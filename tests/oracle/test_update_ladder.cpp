@@ -221,13 +221,15 @@ std::string edge_faults(const Triangulation<Dim>& t) {
   std::string faults;
   std::map<Edge, std::pair<int, int>> counts;
   for (const Edge& edge : ends(t)) ++counts[edge].second;
-  for (const auto& [i, j] : t.edges()) ++counts[{i, j}].first;
+  std::vector<Edge> list;
+  t.for_each_edge([&](int i, int j) { list.emplace_back(i, j); });
+  for (const Edge& edge : list) ++counts[edge].first;
   for (const auto& [edge, count] : counts) {
     if (count == std::pair(1, 2)) continue;
     faults += named(edge) + " is listed " + std::to_string(count.first) + " times and has " +
               std::to_string(count.second) + " ends; ";
   }
-  if (!std::is_sorted(t.edges().begin(), t.edges().end())) faults += "the list is not sorted; ";
+  if (!std::is_sorted(list.begin(), list.end())) faults += "the list is not sorted; ";
   return faults;
 }
 

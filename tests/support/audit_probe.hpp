@@ -66,21 +66,21 @@ struct AuditProbe {
   static auto& memory(auto& table) { return table.memory_; }
 
   // Triangulations that follow grains.
-  static auto& triangulation(auto& n) { return n.t_; }
-  static auto& reference(auto& n) { return n.reference_; }
-  static auto& weight(auto& n) { return n.weight_; }
-  static auto& skin(auto& n) { return n.skin_; }
-  static auto& drift(auto& n) { return n.drift_; }
-  static auto& uncertain(auto& n) { return n.uncertain_; }
+  static auto& triangulation(auto& n) { return n.sites_.t; }
+  static auto& reference(auto& n) { return n.sites_.reference; }
+  static auto& weight(auto& n) { return n.sites_.weight; }
+  static auto& skin(auto& n) { return n.sites_.skin; }
+  static auto& drift(auto& n) { return n.sites_.drift; }
+  static auto& uncertain(auto& n) { return n.follower_.uncertain_; }
   static auto& leaping(auto& n) { return n.leaping_; }
-  static auto& reach(auto& n) { return n.reach_; }
+  static auto& reach(auto& n) { return n.leaper_.reach_; }
   static auto& spent(auto& n) { return n.spent_; }
   /// Lets a grain wait for a new reference.
-  static void join(auto& n, int i) { n.join(i); }
+  static void join(auto& n, int i) { n.sites_.join(i); }
   /// Lets it wait, but only by its state.
   static void mark_as_waiting(auto& n, int i) {
-    n.join(i);
-    n.moved_.clear();
+    n.sites_.join(i);
+    n.sites_.waiting.clear();
   }
 };
 

@@ -1,0 +1,123 @@
+#pragma once
+/// @file
+/// A triangulation that stands still while its grains move within their skins.
+
+#include <lagrain/random.hpp>
+#include <lagrain/skins.hpp>
+#include <lagrain/triangulation.hpp>
+#include <lagrain/vec.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace lagrain {
+
+/// How the triangulation follows the grains. The defaults are proved to miss nothing; other values
+/// exist to show and to test what goes wrong without them.
+struct Laziness {
+  /// Skins as multiples of those that pass the certificate although references are taken at
+  /// different instants: 0.2426 r between two equal grains that touch, more where there is room.
+  double skin = 1.3;
+  bool certify = true;  ///< test the certificate after every update
+  bool follow = true;   ///< false: T is built once and never moved
+  bool leap = true;     ///< where many grains fly, build T anew with wide skins
+};
+
+/// What the triangulation has cost so far.
+struct TriangulationCost {
+  std::int64_t updates = 0;   ///< refreshes in which some reference centre moved
+  std::int64_t moved = 0;     ///< reference centres moved
+  UpdateReport ladder;        ///< what the updates had to do
+  std::int64_t shrunk = 0;    ///< grains given a small skin because an edge failed the certificate
+  std::int64_t searched = 0;  ///< range searches around grains that still failed, or are hidden
+  std::int64_t leaps = 0;     ///< builds with wide skins
+  std::int64_t walks = 0;     ///< grains that left wide skins
+};
+
+/// Sorts a list, and leaves each of its numbers once.
+inline void sort_unique(std::vector<int>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+/// T, and for each grain its reference, its skin and where it stands in an update (skins.hpp has the
+/// symbols). References are in a frame that drifts with the grains, because T does not change when
+/// everything moves together.
+template <int Dim, RegularTriangulation<Dim> T>
+struct LazySites {
+  /// Where a grain stands in an update: not concerned, in `waiting`, or given its new reference.
+  enum class Standing : unsigned char { at_rest, waiting, placed };
+
+  T t;
+  Columns<Dim> reference;             ///< c_i [m]
+  Eigen::VectorXd skin;               ///< s_i [m]
+  Eigen::VectorXd weight;             ///< w_i [m^2]
+  Vec<Dim> drift = Vec<Dim>::Zero();  ///< of the grains against the references' frame [m]
+  std::vector<Standing> standing;     ///< of each grain
+  std::vector<int> waiting;           ///< grains that need new references
+  std::vector<int> placed;            ///< grains that got them in this update; maybe twice
+  TriangulationCost cost;
+  /// References stand aside by this times the skin, each in a direction of its own: so they are in
+  /// general position even where grains lie on a lattice, and predicates need no exact arithmetic.
+  Columns<Dim> aside;
+
+  int size() const { return static_cast<int>(weight.size()); }
+  Standing& standing_of(int i) { return standing[static_cast<std::size_t>(i)]; }
+
+  void reset(const Columns<Dim>& x, const Eigen::VectorXd& radius) {
+    Random random(1);
+    aside = x.unaryExpr([&](double) { return kHair * random.uniform(-1, 1); });
+    skin.setZero(radius.size());
+    standing.assign(static_cast<std::size_t>(x.cols()), Standing::at_rest);
+    waiting.clear();
+    placed.clear();
+  }
+
+  /// Builds T for the grains as they are.
+  void build_without_skins(const Columns<Dim>& x, const Eigen::VectorXd& radius) {
+    reference = x;
+    for (int i = 0; i < x.cols(); ++i) reference.col(i) += radius[i] * aside.col(i);
+    drift.setZero();
+    weight = radius.array().square();
+    t.build(reference, weight);
+  }
+
+  void set_skin(const Eigen::VectorXd& radius, int i, double s) {
+    skin[i] = s;
+    weight[i] = weight_with(radius[i], s);
+  }
+
+  /// How far a grain at x may move before it leaves its skin [m]; negative if it has, or is not a
+  /// number.
+  double room(int i, const Vec<Dim>& x) const {
+    return skin[i] * kUsable - (x - drift - reference.col(i)).norm();
+  }
+
+  /// Lets a grain wait for a new reference.
+  void join(int i) {
+    standing_of(i) = Standing::waiting;
+    waiting.push_back(i);
+  }
+
+  /// Whether the reference balls of two grains pass the certificate.
+  bool pass(int a, int b) const {
+    return passes_certificate((reference.col(a) - reference.col(b)).squaredNorm(), weight[a],
+                              weight[b]);
+  }
+
+  /// The least radius among a grain and its neighbours in T.
+  double smallest_around(const Eigen::VectorXd& radius, int i) const {
+    double smallest = radius[i];
+    t.for_each_neighbour(i, [&](int j) { smallest = std::min(smallest, radius[j]); });
+    return smallest;
+  }
+
+ private:
+  /// Of a skin. Ten times more or less serves as well: it only must be far above rounding and far
+  /// below what makes a skin useful.
+  static constexpr double kHair = 1e-7;
+};
+
+}  // namespace lagrain
