@@ -13,8 +13,9 @@
 
 namespace lagrain {
 
-/// Square cells as wide as the longest reach of any pair, so that every near pair lies in the same
-/// or in adjacent cells. Together with the margins of the near list this is a Verlet list.
+/// A grid of square cells (cubes in space) as wide as the longest reach of any pair, so that every
+/// near pair lies in the same or in adjacent cells. Together with the margins of the near list this
+/// is a Verlet list.
 ///
 /// One cell size for all: with a wide range of sizes a cell holds many small grains, and the cost
 /// grows with the ratio. (Hierarchical grids mend that; this is the usual baseline.)
@@ -48,8 +49,8 @@ class CellGrid {
     sort_pairs(pairs, n);
   }
 
-  /// Candidates are the members of the cells around a stray, and all that have strayed since the
-  /// cells were filled.
+  /// Proposes the members of the cells around a stray, and all that have strayed since the cells
+  /// were filled.
   bool pairs_of(std::vector<int>& strays, const PlaceOf<Dim>& place, const Eigen::VectorXd& radius,
                 Eigen::VectorXd& margin, std::vector<Pair>& pairs) {
     pairs.clear();
@@ -70,6 +71,9 @@ class CellGrid {
  private:
   using Index = std::array<int, Dim>;
   static constexpr std::size_t kLast = Dim - 1;
+  /// Cells are widened by kWiden until there are so few. The limit binds only where grains fly far
+  /// apart. It was not tuned: half or twice as many empty cells take no time beside the pairs.
+  static constexpr double kMostCellsPerGrain = 4, kFewCells = 64, kWiden = 1.5;
 
   /// A grain in the order of the cells.
   struct Member {
@@ -84,14 +88,14 @@ class CellGrid {
     low_ = x.rowwise().minCoeff();
     const Vec<Dim> extent = x.rowwise().maxCoeff() - low_;
     // A slightly wider cell absorbs the rounding of the division below. A grain that flies far away
-    // must not cost an empty cell per grain width: at most about four cells per grain.
+    // must not cost an empty cell per grain width.
     width_ = 2 * (radius + margin).maxCoeff() * (1 + 1e-9);
     const auto cells_for = [&](double w) {
       double count = 1;
       for (int d = 0; d < Dim; ++d) count *= std::floor(extent[d] / w) + 1;
       return count;
     };
-    while (cells_for(width_) > 4.0 * n + 64) width_ *= 1.5;
+    while (cells_for(width_) > kMostCellsPerGrain * n + kFewCells) width_ *= kWiden;
     std::size_t count = 1;
     for (int d = 0; d < Dim; ++d) {
       shape_[static_cast<std::size_t>(d)] = static_cast<int>(extent[d] / width_) + 1;
@@ -133,8 +137,8 @@ class CellGrid {
     return c;
   }
 
-  /// The rows along the last axis that follow a cell's own, as far as they are adjacent to the
-  /// cell: f(first, end) of their members, which lie side by side.
+  /// Visits the rows along the last axis that follow a cell's own, as far as they are adjacent to
+  /// the cell: f(first, end) of their members, which lie side by side.
   template <class F>
   void for_each_row_ahead(const Index& cell, F&& f) const {
     const auto visit = [&](Index row) {
@@ -162,7 +166,7 @@ class CellGrid {
     }
   }
 
-  /// The rows of the cells around a cell and of itself: f(first, end) of their members.
+  /// Visits the rows of a cell and of the cells around it: f(first, end) of their members.
   template <class F>
   void for_each_row_around(const Index& cell, F&& f) const {
     const auto range = [&](std::size_t d) {
@@ -187,6 +191,7 @@ class CellGrid {
     }
   }
 
+  /// Adds the pairs within reach of the member k and the members [first, end).
   void list_pairs(int k, int first, int end, std::vector<Pair>& pairs) const {
     const Member& a = members_[static_cast<std::size_t>(k)];
     for (int other = first; other < end; ++other) {

@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// Steps 2 and 3 of the paper: contacts are detected among the near pairs, and the law is applied at
-/// each. What comes out is the force on every grain.
+/// Steps 2 and 3 of the paper: contacts are detected among the near pairs, and the law is applied
+/// at each. What comes out is the force on every grain.
 
 #include <lagrain/contact_kernel.hpp>
 #include <lagrain/deep_overlap.hpp>
@@ -17,9 +17,9 @@
 namespace lagrain {
 
 /// Forces on the grains, block by block of the near list, so that blocks may be shared by threads.
-/// First every block keeps the forces of its pairs across blocks; then each adds up all that acts on
-/// its own grains, in an order that the slots fix: weights, pairs within the block, pairs across,
-/// walls.
+/// First every block keeps the forces of its pairs across blocks; then each adds up all that acts
+/// on its own grains, in an order that the slots fix: weights, pairs within the block, pairs
+/// across, walls.
 template <int Dim, class Law>
 class ContactForces {
  public:
@@ -66,8 +66,8 @@ class ContactForces {
     sums.pair_seconds += watch.seconds();
   }
 
-  /// The loads of the grains of block b, from its first slot on; good until the thread is at another
-  /// block.
+  /// The loads of the grains of block b, from its first slot on; good until the thread is at
+  /// another block.
   /// @pre the forces of all pairs across blocks are kept
   const Load* detect_and_apply_law(Scene scene, List& near, std::size_t b, std::size_t thread,
                                    const GrainStore<Dim, needs>& store, const Vec<Dim>& gravity) {

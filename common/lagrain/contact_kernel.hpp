@@ -15,14 +15,14 @@
 
 namespace lagrain {
 
-/// What the contacts are computed with. `scalar` is the oracle of the others.
+/// Instructions that contacts are computed with. `scalar` is the oracle of the others.
 enum class InstructionSet { scalar, avx2, avx512 };
 
-/// Those that this machine has, the narrowest first; the last is the default.
+/// The sets that this machine has, the narrowest first; the last is the default.
 const std::vector<InstructionSet>& instruction_sets();
 
-/// Passes over the contacts of a list: contact_sweep.hpp, compiled for every instruction set. Results
-/// do not depend on the set, bit for bit.
+/// Passes over the contacts of a list: contact_sweep.hpp, compiled for every instruction set.
+/// Results do not depend on the set, bit for bit.
 template <int Dim, class Law>
 class ContactKernel {
  public:
@@ -33,8 +33,8 @@ class ContactKernel {
   /// @param one_law  all contacts between grains follow the first law of the table
   ContactKernel(InstructionSet set, bool one_law);
 
-  /// All contacts of the table: adds their forces to the loads of both grains or, if `out` is given,
-  /// leaves them there, at the places of the contacts in the table.
+  /// All contacts of the table: adds their forces to the loads of both grains or, if `out` is
+  /// given, leaves them there, at the places of the contacts in the table.
   Tally pairs(const Scene& scene, PairTable<Pair, Memory>& table, Listing listing,
               PairLoad<Dim, needs>* out = nullptr) const {
     return pairs_(scene, table, listing, out);
@@ -81,8 +81,8 @@ struct Sweeps {
   }
 };
 
-/// The same functions compiled for one instruction set, everything inlined (except with sanitizers,
-/// whose checks the compiler would inline for half an hour).
+// The sweeps compiled for one instruction set each, everything inlined (except with sanitizers,
+// whose checks the compiler would inline for half an hour).
 #if defined(__SANITIZE_ADDRESS__)
 #define LAGRAIN_INLINED
 #else

@@ -18,6 +18,8 @@ namespace lagrain {
 template <int Dim>
 class ContactSearch {
  public:
+  /// Up to so many grains the search is brute force, in which there is nothing to get wrong. It was
+  /// not tuned: only audits of small scenes take longer if it is twice as large.
   static constexpr int kBruteForceLimit = 200;
 
   /// The pairs that touch, sorted; good until the next call.
@@ -34,7 +36,9 @@ class ContactSearch {
   }
 
  private:
-  static constexpr double kGiant = 4;  // times the median radius
+  /// Grains above so many median radii are held against all others. The limit was not tuned: at
+  /// half of it more grains are compared with all, at twice a cell holds 2^Dim times as many.
+  static constexpr double kGiant = 4;
 
   void find_with_grid(const Columns<Dim>& x, const Eigen::VectorXd& radius) {
     const int n = static_cast<int>(radius.size());

@@ -3,8 +3,8 @@
 /// The inner loop of a time step: all contacts of a list, several at once.
 ///
 /// A law is written over a number type (touch.hpp). Here it is run with Lanes; what does not fill
-/// the lanes runs with `double`. Forces are always added in the order of the list, and losses in the
-/// same partial sums, so results do not depend on the width, bit for bit.
+/// the lanes runs with `double`. Forces are always added in the order of the list, and losses in
+/// the same partial sums, so results do not depend on the width, bit for bit.
 ///
 /// A contact goes through four stages: *gather* its grains from memory into lanes, *touch* (do they
 /// overlap, and how: the paper's step 2), *respond* (the law: step 3), *scatter* force and torque
@@ -26,7 +26,7 @@
 
 namespace lagrain::detail {
 
-/// Entries of a table: side by side, or picked from it.
+/// Places of entries in a table: side by side, or picked.
 struct InRow {
   std::size_t first;
   std::size_t operator[](std::size_t k) const { return first + k; }
@@ -37,8 +37,8 @@ struct Picked {
 };
 
 /// What sweeps of every width have added up. Each sum is kept as eight partial sums whatever the
-/// width, so that every width adds the same numbers in the same order: the k-th contact that a sweep
-/// meets counts in partial sum k mod 8.
+/// width, so that every width adds the same numbers in the same order: the k-th contact that a
+/// sweep meets counts in partial sum k mod 8.
 class Sums {
  public:
   static constexpr std::size_t kPartialSums = 8;
@@ -210,7 +210,7 @@ struct Sweep {
       }
     }
   };
-  /// The same as rows, one for each lane.
+  /// The columns of a load as rows, one for each lane.
   struct LoadRows {
     detail::Rows<Real> first, second;
 
@@ -258,12 +258,13 @@ struct Sweep {
     return picked;
   }
 
-  /// The grains of a pair of each lane, by slot and as bodies.
+  /// The two grains of the pair in each lane, by slot and as bodies.
   struct PairOfLanes {
     Slots i, j;
     Body<Dim, needs, Real> body_i, body_j;
   };
 
+  /// Reads the grains of the pairs at[0], at[1], ... from memory.
   template <class Places>
   PairOfLanes gather(const PairTable<Pair, typename Law::template Memory<Dim>>& table,
                      Places at) const {
@@ -327,7 +328,7 @@ struct Sweep {
     scatter(pair, touch, response.force, at, out);
   }
 
-  /// The same with walls.
+  /// Contacts of a grain and a wall: the entries first, first + 1, ... of the table, one per lane.
   void walls(PairTable<WallPair, typename Law::template Memory<Dim>>& table, std::size_t first,
              std::size_t partial, Vec<Dim>* wall_forces) {
     Slots i;
@@ -397,6 +398,9 @@ template <int Dim, class Law, class Real, bool kOneLaw>
 Tally sweep_picked(const ContactScene<Dim, Law>& scene,
                    PairTable<Pair, typename Law::template Memory<Dim>>& table,
                    PairLoad<Dim, Law::needs>* out) {
+  // Pairs that are searched before the law is applied to what was found among them. It changes no
+  // result and was not tuned: the records of a stretch lie in the first-level cache at twice the
+  // number as well, and at half of it the lanes are left as rarely.
   constexpr std::size_t kStretch = 256, kWidth = kLanes<Real>;
   Sweep<Dim, Law, Real, kOneLaw> wide(scene);
   Sweep<Dim, Law, double, kOneLaw> single(scene);

@@ -27,8 +27,8 @@ namespace lagrain {
 /// through its last skin, so that a grain in flight crosses the whole ball and not half of it.
 ///
 /// Where an edge fails the certificate (deep overlap, a tiny grain come close to a large one) both
-/// ends are brought up to date with small skins. What still fails, and what is hidden, is uncertain:
-/// then the surroundings of these grains must be searched by brute force.
+/// ends are brought up to date with small skins. What still fails, and what is hidden, is
+/// uncertain: then the surroundings of these grains must be searched by brute force.
 template <int Dim, RegularTriangulation<Dim> T>
 class Follower {
  public:
@@ -66,8 +66,8 @@ class Follower {
     certify(sites, place, radius);
   }
 
-  /// Every pair of reference balls that meet is an edge, or has an uncertain end; and so has every
-  /// edge that fails.
+  /// Checks that every pair of reference balls that meet is an edge, or has an uncertain end, and
+  /// that so has every edge that fails.
   void audit(const Sites& sites, const Eigen::VectorXd& radius,
              std::vector<std::string>& defects) const {
     if (!laziness_.certify) return;
@@ -104,23 +104,30 @@ class Follower {
   using Standing = typename Sites::Standing;
   using Prices = UpdatePrices<Dim>;
 
-  // Numbers that change no result, only how often references move. They were chosen together on the
-  // shaken beds of `bench_lagrain`, where references moved half as often as with equal skins.
-  /// Of a grain's radius. Twice as much helps nobody: a grain that finds so much room is rare.
+  // The numbers below change no result, only how often references move. They were chosen together
+  // on the shaken beds of `bench_lagrain`: references moved half as often as with equal skins and
+  // no reference ahead. What a factor of two does to each was not measured; it says what to expect.
+
+  /// The largest skin, of a grain's radius. It binds only where a grain has much room: with half of
+  /// it a grain in flight is placed up to twice as often.
   static constexpr double kMostSkin = 2;
-  /// Of the smallest radius around: a grain gets this much even if the certificate then fails.
+  /// The smallest skin, of the smallest radius around: a grain gets it even if the certificate then
+  /// fails. With less, a grain squeezed by others is placed again very soon; with more, more edges
+  /// fail.
   static constexpr double kLeastSkin = 0.02;
-  /// Of a skin, that a reference stands ahead. At 0 a grain in flight is placed nearly twice as
-  /// often; at 1 a grain that turns round has no room.
+  /// How far ahead a reference may stand, of a skin. With none, a grain in flight crosses half of
+  /// the ball and is placed nearly twice as often; with a whole skin a grain that turns round has
+  /// no room.
   static constexpr double kMostAhead = 0.7;
-  /// Of a fair share. A neighbour that leaves less than this is placed anew itself: more often if it
-  /// is larger, later and then with tighter skins if it is smaller.
+  /// A neighbour that leaves less than this part of a fair share is placed anew itself. With more,
+  /// more neighbours are placed; with less, skins stay tight beside neighbours that have strayed.
   static constexpr double kTooLittle = 0.25;
-  /// After so many rounds of smaller skins, edges that still fail are left to the search. One or two
-  /// rounds are enough for all but deep overlaps.
+  /// After so many rounds of smaller skins, edges that still fail are left to the search. Another
+  /// round costs one pass over all edges where grains overlap deeply, and nothing elsewhere.
   static constexpr int kRounds = 3;
-  /// If more than one grain in so many has a new reference, all edges are tested: to visit those of
-  /// single grains costs several times as much for each.
+  /// If more than one grain in so many has a new reference, all edges are tested in one pass over
+  /// the list: to visit those of single grains costs several times as much for each edge. It was
+  /// not tuned; the tests are a small part of an update.
   static constexpr std::size_t kTestAllFrom = 16;
 
   /// What a new reference must keep from a neighbour's: see renew_one.
@@ -207,8 +214,8 @@ class Follower {
     sites.waiting.clear();
   }
 
-  /// Looks for edges that fail the certificate (2), and brings their ends up to date with skins that
-  /// pass between grains of hardly any overlap. Ends of edges that fail again and again are
+  /// Looks for edges that fail the certificate (2), and brings their ends up to date with skins
+  /// that pass between grains of hardly any overlap. Ends of edges that fail again and again are
   /// uncertain. All grains are back at rest then.
   template <class Place>
   void certify(Sites& sites, Place&& place, const Eigen::VectorXd& radius) {

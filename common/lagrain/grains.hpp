@@ -24,6 +24,7 @@ struct SpinState {
   Eigen::VectorXd inverse_inertia;  ///< [1/(kg m^2)], 0 for a pinned grain
 };
 
+/// What stands in place of SpinState where nothing spins.
 struct NoSpin {};
 
 /// N discs (Dim = 2) or spheres (Dim = 3), as they are given to a simulation and as it shows them.

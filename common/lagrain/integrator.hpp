@@ -12,6 +12,7 @@
 
 namespace lagrain {
 
+/// What an integrator is: its name, when it wants forces, and the two halves of a step.
 template <class I>
 concept Integrator = requires(double& x, double a, double dt) {
   { I::kName } -> std::convertible_to<const char*>;

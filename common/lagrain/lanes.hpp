@@ -14,7 +14,7 @@
 
 namespace lagrain {
 
-/// One bit of truth per lane.
+/// One truth value per lane: what a comparison of lanes gives.
 template <int W>
 struct LaneMask {
   typedef long long Vector __attribute__((vector_size(W * sizeof(long long))));
@@ -22,7 +22,7 @@ struct LaneMask {
 
   LaneMask() = default;
   explicit LaneMask(const Vector& a) : v(a) {}
-  // As in Lanes.
+  // Not trivial on purpose, as in Lanes.
   LaneMask(const LaneMask& other) : v(other.v) {}
   LaneMask& operator=(const LaneMask& other) {
     v = other.v;
@@ -30,7 +30,7 @@ struct LaneMask {
   }
 };
 
-/// W doubles.
+/// W doubles that instructions work on at once.
 template <int W>
 struct Lanes {
   typedef double Vector __attribute__((vector_size(W * sizeof(double))));

@@ -42,9 +42,9 @@ inline void sort_unique(std::vector<int>& list) {
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
-/// T, and for each grain its reference, its skin and where it stands in an update (skins.hpp has the
-/// symbols). References are in a frame that drifts with the grains, because T does not change when
-/// everything moves together.
+/// T, and for each grain its reference, its skin and where it stands in an update (skins.hpp has
+/// the symbols). References are in a frame that drifts with the grains, because T does not change
+/// when everything moves together.
 template <int Dim, RegularTriangulation<Dim> T>
 struct LazySites {
   /// Where a grain stands in an update: not concerned, in `waiting`, or given its new reference.

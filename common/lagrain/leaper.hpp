@@ -17,8 +17,8 @@ namespace lagrain {
 /// Where many grains fly, or a few very far, single moves cost more than to build T anew, and wider
 /// skins make both rarer. They leave the certificate behind. So T *leaps*: it is built with wide
 /// skins, and the pairs of reference balls that meet are listed by walking in it, which asks for no
-/// certificate (ReachList). Until the next leap T stays as it is; grains that leave their wide skins
-/// find their partners by such walks as well.
+/// certificate (ReachList). Until the next leap T stays as it is; grains that leave their wide
+/// skins find their partners by such walks as well.
 template <int Dim, RegularTriangulation<Dim> T>
 class Leaper {
  public:
@@ -79,9 +79,10 @@ class Leaper {
   friend struct AuditProbe;
   using Prices = UpdatePrices<Dim>;
 
-  /// Of the smallest radius around. `bench_lagrain`, shaken beds: 1.5 in both dimensions was slower
-  /// (discs want more, spheres less). It changes no result: narrower skins are left more often,
-  /// wider ones meet more partners.
+  /// Width of the skins, of the smallest radius around. It was chosen on the shaken beds of
+  /// `bench_lagrain`, where 1.5 in both dimensions was slower: discs want more, spheres less. It
+  /// changes no result. Skins of half the width are left more often, those of twice the width meet
+  /// more partners.
   static constexpr double kWideSkin = Dim == 2 ? 2.0 : 1.0;
 
   static typename ReachList<Dim>::Ball reference_ball(const Sites& sites,

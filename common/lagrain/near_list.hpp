@@ -70,14 +70,14 @@ class NearList {
   }
   std::size_t across_count() const { return across_; }
 
-  /// Whether a refresh would pay although the list holds: it has lived long and hardly any slow
-  /// grain has left its margin, so narrower ones would do.
+  /// Whether a refresh would pay although the list holds. It has lived long then, and hardly any
+  /// slow grain has left its margin: narrower margins would do.
   bool worth_narrowing(std::int64_t step) const {
     return step - last_refresh_ > kLong && floor_ > kLeastFloor && slow_rate(step) < kFew;
   }
 
-  std::int64_t refreshes() const { return refreshes_; }
-  std::int64_t amended() const { return amended_; }  ///< grains centred anew between refreshes
+  std::int64_t refreshes() const { return refreshes_; }  ///< since the start
+  std::int64_t amended() const { return amended_; }      ///< grains centred anew between refreshes
   /// False before the first refresh, and when the grains have new slots.
   bool listed() const { return listed_; }
 
@@ -105,7 +105,9 @@ class NearList {
     return (x - shift - stay.centre).squaredNorm() <= stay.squared_margin;
   }
 
-  /// The same for all walls, which are centred where they were at the last refresh.
+  /// Whether all walls are within their margins. Walls are centred where they were at the last
+  /// refresh.
+  /// @pre listed()
   bool walls_hold(const std::vector<Wall<Dim>>& all_walls, const Vec<Dim>& shift) const {
     for (std::size_t w = 0; w < all_walls.size(); ++w) {
       const double moved = (all_walls[w].point - shift - wall_centre_[w]).norm();
@@ -257,18 +259,35 @@ class NearList {
 
  private:
   friend struct AuditProbe;
-  static constexpr double kHorizon = 100;      // steps that a grain may keep its speed
-  static constexpr double kCeiling = 0.3;      // of a radius: wider lists cost more than refreshes
-  static constexpr double kLeastFloor = 1e-4;  // of a radius
-  static constexpr double kMostFloor = 0.1;
-  /// The margins used are a hair wider than those promised: rounding in the tests cannot matter.
-  static constexpr double kHair = 1 - 1e-6;
-  /// What it costs to centre one grain anew, and in a refresh, each; adding a pair costs half the
-  /// length of the table. In units of about 3 ns.
+
+  // The numbers below change no result, only how often lists are made anew and how many of their
+  // pairs are too far apart to touch. They were chosen by the time of a whole step on the beds of
+  // `bench_lagrain`, settled and shaken. What a factor of two does to each was not measured. Lists
+  // take about a tenth of a step (its column neighbourhood_%), and margins adapt to how long lists
+  // live, so no more than a few percent are at stake.
+
+  /// Steps that a grain may keep its speed before it is listed anew.
+  static constexpr double kHorizon = 100;
+  /// The largest margin, of a radius: wider lists cost more than the refreshes that they spare.
+  static constexpr double kCeiling = 0.3;
+  /// Between these, of a radius, lies the floor: the margin of slow grains.
+  static constexpr double kLeastFloor = 1e-4, kMostFloor = 0.1;
+  /// The floor grows by kWiden where lists live for fewer than kShort steps, or more than kMany of
+  /// all slow grains leave their margins in a step. It shrinks by kNarrow where lists live for more
+  /// than kLong steps and fewer than kFew leave.
+  static constexpr std::int64_t kShort = 30, kLong = 60;
+  static constexpr double kFew = 2e-5, kMany = 2e-4;
+  static constexpr double kWiden = 1.25, kNarrow = 0.4;
+
+  /// Prices in units of about 3 ns: to centre one grain anew between refreshes, and in a refresh,
+  /// each. To insert a pair moves half of a table, one unit for an entry. A refresh is due when
+  /// amendments have cost as much as one, so they never cost more than twice the better choice;
+  /// with prices wrong by a factor of two it would be three times.
   static constexpr std::int64_t kPriceOfStray = 500;
   static constexpr std::int64_t kPriceOfRefresh = 50;
-  static constexpr std::int64_t kShort = 30, kLong = 60;  // lives of a list, in steps
-  static constexpr double kFew = 2e-5, kMany = 2e-4;      // of all grains that leave in a step
+
+  /// The margins used are a hair wider than those promised: rounding in the tests cannot matter.
+  static constexpr double kHair = 1 - 1e-6;
 
   struct Stay {
     Vec<Dim> centre;
@@ -285,9 +304,9 @@ class NearList {
   void adapt(std::int64_t step) {
     if (refreshes_ > 0) {
       if (step - last_refresh_ < kShort || slow_rate(step) > kMany) {
-        floor_ = std::min(floor_ * 1.25, kMostFloor);
+        floor_ = std::min(floor_ * kWiden, kMostFloor);
       } else if (worth_narrowing(step)) {
-        floor_ = std::max(floor_ * 0.4, kLeastFloor);
+        floor_ = std::max(floor_ * kNarrow, kLeastFloor);
       }
     }
     slow_ = 0;
@@ -492,23 +511,24 @@ class NearList {
     return true;
   }
 
-  int size_ = 0;
+  int size_ = 0;  // number of grains
   int block_size_ = 1;
   std::vector<Block> blocks_;
   std::size_t across_ = 0;  // pairs across blocks
   bool listed_ = false;
   double time_ = 0;                    // of the last refresh [s]
   Vec<Dim> drift_ = Vec<Dim>::Zero();  // velocity of the frame [m/s]
-  Eigen::VectorXd margin_;
+  Eigen::VectorXd margin_;             // of each grain, around its centre [m]
   std::vector<Stay> stay_;
   std::vector<Vec<Dim>> wall_centre_;
   std::vector<double> wall_margin_;
-  std::int64_t paid_ = 0;  // for amendments since the last refresh
+  std::int64_t paid_ = 0;  // for amendments since the last refresh, in the unit of the prices
   std::int64_t amended_ = 0;
-  std::int64_t slow_ = 0;  // grains that left margins set by the floor since the last refresh
-  std::vector<Pair> found_, found_within_, found_across_;
+  std::int64_t slow_ = 0;    // grains that left margins set by the floor since the last refresh
+  std::vector<Pair> found_;  // by the neighbourhood, in its last answer
+  std::vector<Pair> found_within_, found_across_;  // of these, for one block
   std::vector<WallPair> found_walls_, block_walls_;
-  double floor_ = 0.01;
+  double floor_ = 0.01;  // margin of slow grains, of their radii
   std::int64_t last_refresh_ = 0;
   std::int64_t refreshes_ = 0;
 };

@@ -29,7 +29,7 @@ struct Ledger {
   double balance() const { return kinetic + gravity + elastic + dashpot + friction - wall_work; }
 };
 
-/// The run's own error bar: what the ledger cannot account for since `start` [J].
+/// Energy that the ledger cannot account for since `start` [J]: the run's own error bar.
 inline double residual(const Ledger& now, const Ledger& start) {
   return now.balance() - start.balance();
 }
@@ -66,6 +66,7 @@ SpinVec<Dim> angular_momentum(const Grains<Dim, needs>& g) {
   return total;
 }
 
+/// Where the energy of a simulation is now, and where it went since the start.
 template <int Dim, class Law, class Motion, class N>
 Ledger energy_ledger(const Simulation<Dim, Law, Motion, N>& sim) {
   const auto& g = sim.grains();
@@ -96,6 +97,7 @@ struct ContactStatistics {
   double coordination = 0;     ///< mean number of contacts of a grain, walls included [-]
 };
 
+/// Counts the contacts of a simulation as it is now.
 template <int Dim, class Law, class Motion, class N>
 ContactStatistics contact_statistics(const Simulation<Dim, Law, Motion, N>& sim) {
   const auto& g = sim.grains();

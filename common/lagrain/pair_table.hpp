@@ -44,7 +44,7 @@ class PairTable {
       for (int r = 0; r < kReals; ++r) memory_row(r)[k] = m[r];
     }
   }
-  /// Number r of all memories, side by side.
+  /// Number r of the memories of all pairs, side by side.
   double* memory_row(int r) { return memory_[static_cast<std::size_t>(r)].data(); }
   const double* memory_row(int r) const { return memory_[static_cast<std::size_t>(r)].data(); }
 

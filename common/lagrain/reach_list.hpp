@@ -38,8 +38,7 @@ namespace lagrain {
 ///   site nearest to a ball Q that has come from elsewhere, and L such that the ball of b, enlarged
 ///   so, holds Q. Then a walk from b over the enlarged balls that meet Q finds all that meet it.
 /// - Q becomes a *guest* of b. Another such ball that meets Q meets the enlarged ball of b: its
-/// walk
-///   finds b, and there Q, if its own L is no smaller.
+///   walk finds b, and there Q, if its own L is no smaller.
 ///
 /// Balls that are hidden from T, or far from all sites, are compared with all others.
 template <int Dim>
@@ -173,9 +172,11 @@ class ReachList {
 
  private:
   friend struct AuditProbe;
-  /// Of a squared distance: what touches by no more than rounding is taken for meeting.
+  /// Part of a squared distance: what touches by no more than rounding is taken for meeting.
   static constexpr double kRounding = 1 + 1e-9;
-  /// Balls that ask for a larger L, in squared radii of the site, would make all walks long.
+  /// The largest L of a guest, in squared radii of the site that it is nearest to. A ball that asks
+  /// for more is compared with all others instead, because it would make all walks long. It changes
+  /// no result: half as much sends more balls to be compared, twice as much makes walks longer.
   static constexpr double kWidest = 1.5;
 
   struct Guest {
@@ -217,7 +218,7 @@ class ReachList {
     added_.push_back({std::min(i, j), std::max(i, j)});
   }
 
-  /// All pairs that meet are listed, none twice, and each ball knows its partners.
+  /// Checks that all pairs that meet are listed, none twice, and that each ball knows its partners.
   void audit_pairs(std::vector<std::string>& defects) const {
     const auto count = static_cast<Eigen::Index>(balls_.size());
     std::vector<Pair> listed(pairs_.begin(), pairs_.end());
@@ -250,8 +251,8 @@ class ReachList {
     }
   }
 
-  /// A ball that has moved is compared with all others, or a guest of a site whose ball holds it
-  /// when enlarged by widest_.
+  /// Checks that a ball that has moved is compared with all others, or is a guest of a site whose
+  /// ball holds it when enlarged by widest_.
   void audit_guests(std::vector<std::string>& defects) const {
     std::vector<char> held(balls_.size(), 0);
     for (const int i : apart_) held[index(i)] = 1;
@@ -275,7 +276,7 @@ class ReachList {
     }
   }
 
-  /// A site of T near the ball of i: the walk to it goes down the power of the ball's centre, along
+  /// Finds a site of T near the ball of i: it goes down the power of the ball's centre, along
   /// edges. (Rounding may stop it early: any site would do.)
   int nearest(int i) const {
     const Vec<Dim>& x = balls_[index(i)].centre;
@@ -323,7 +324,7 @@ class ReachList {
     }
   }
 
-  /// The ends of the edges at each site, side by side.
+  /// Lists the ends of the edges at each site, side by side.
   void list_edges(std::span<const EdgeList::Edge> edges, int sites) {
     first_edge_.assign(index(sites) + 2, 0);
     for (const auto& edge : edges) {

@@ -14,7 +14,7 @@
 
 namespace lagrain {
 
-/// A number of doubles that instructions on four can read.
+/// The least multiple of four that is not below `count`: so many doubles can be read by fours.
 constexpr int padded_to_four(int count) {
   return (count + 3) / 4 * 4;
 }
@@ -27,7 +27,7 @@ constexpr std::size_t record_alignment(int doubles) {
   return alignment;
 }
 
-/// What contacts read of a grain. Members are the places of the numbers in it.
+/// What contacts read of a grain, as one row of numbers. The constants are their places in it.
 template <int Dim, Needs needs>
 struct GrainRecord {
   static constexpr int kPosition = 0;
@@ -116,7 +116,7 @@ inline void transpose(Four& a, Four& b, Four& c, Four& d) {
   c = __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7);
   d = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
 }
-/// The same in the lower and in the upper half at once.
+/// Four rows of four numbers into columns, in the lower and in the upper half at once.
 inline void transpose(Eight& a, Eight& b, Eight& c, Eight& d) {
   const Eight ab_even = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
   const Eight ab_odd = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
@@ -128,8 +128,8 @@ inline void transpose(Eight& a, Eight& b, Eight& c, Eight& d) {
   d = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 10, 11, 6, 7, 14, 15);
 }
 
-/// Number c of each row, for c in [0, N): column[c] has one lane per row. By fours; the last four
-/// may overlap those before.
+/// Reads number c of each row, for c in [0, N): column[c] has one lane per row. It reads by fours;
+/// the last four may overlap those before.
 template <int N>
 void read_columns(const std::array<const double*, 1>& row, std::array<double, N>& column) {
   for (std::size_t c = 0; c < N; ++c) column[c] = row[0][c];
@@ -203,7 +203,7 @@ struct Rows<Lanes<W>> {
 
 }  // namespace detail
 
-/// The bodies of several records, a lane each.
+/// Reads the bodies of several records, a lane each.
 template <class Real, int Dim, Needs needs>
 Body<Dim, needs, Real> read_bodies(const GrainRecord<Dim, needs>* records,
                                    const std::array<int, kLanes<Real>>& slot) {

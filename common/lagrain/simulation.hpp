@@ -47,7 +47,8 @@ namespace lagrain {
 /// list holds. Grains lie in slots (GrainStore), and blocks of slots are what threads share.
 ///
 /// Forces are summed in an order fixed by the slots, so every neighbourhood, instruction set and
-/// number of threads gives the same trajectory, bit for bit. One object is for one caller at a time.
+/// number of threads gives the same trajectory, bit for bit. One object is for one caller at a
+/// time.
 template <int Dim, ContactLaw<Dim> Law, Integrator Motion, Neighbourhood<Dim> N>
 class Simulation {
  public:
@@ -55,8 +56,8 @@ class Simulation {
   using Memory = typename Law::template Memory<Dim>;
 
   /// Evaluates the forces at time 0.
-  /// @throws ContractError if the time step is not safe (the message names the safe one), a material
-  /// is not in the table of laws, or the integrator cannot integrate the scene.
+  /// @throws ContractError if the time step is not safe (the message names the safe one), a
+  /// material is not in the table of laws, or the integrator cannot integrate the scene.
   Simulation(Grains<Dim, needs> grains, LawTable<Law> laws, std::vector<Wall<Dim>> walls,
              Setting<Dim> setting, N neighbourhood = {})
       : store_(std::move(grains), !laws.one_law()),
@@ -203,7 +204,9 @@ class Simulation {
   using Moving = MovingGrain<Dim, needs, Motion>;
 
   /// Blocks of slots are the unit of work of a thread. They are so large that few pairs lie across
-  /// them, and so few that what each adds up costs nothing.
+  /// them, and so few that what each adds up costs nothing. In blocks of half the size 2^(1/Dim)
+  /// times as many pairs lie across; with twice the size small scenes have too few blocks for many
+  /// threads. Results depend on the size in the last digits, because blocks fix the order of sums.
   static constexpr int kLeastBlock = Dim == 2 ? 1024 : 2048;
   static constexpr int kMostBlocks = 128;
 

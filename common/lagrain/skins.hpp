@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// Why a triangulation that follows the grains lazily misses no contact, and how large the skins may
-/// be that make it so. Pure functions of a few numbers; who calls them is in follower.hpp.
+/// Why a triangulation that follows the grains lazily misses no contact, and how large the skins
+/// may be that make it so. Pure functions of a few numbers; who calls them is in follower.hpp.
 ///
 /// Symbols, for a grain i (or a, b, j):
 ///
@@ -17,9 +17,9 @@
 ///     |c_k - c_a|^2 > rho_k^2 + rho_a^2,   |c_k - c_b|^2 > rho_k^2 + rho_b^2.             (1)
 ///
 /// If (1) holds for the pair a, b as well, it is an edge of the regular triangulation with weights
-/// rho^2, in any dimension. Proof: let p = l c_a + m c_b, with l + m = 1, be the point of the segment
-/// that has the same power P = |p - c_a|^2 - rho_a^2 to both. The balls meet, so P <= 0, and
-/// P = l m |c_a - c_b|^2 - l rho_a^2 - m rho_b^2. The power of p to any third ball k is
+/// rho^2, in any dimension. Proof: let p = l c_a + m c_b, with l + m = 1, be the point of the
+/// segment that has the same power P = |p - c_a|^2 - rho_a^2 to both. The balls meet, so P <= 0,
+/// and P = l m |c_a - c_b|^2 - l rho_a^2 - m rho_b^2. The power of p to any third ball k is
 ///
 ///     l |c_k - c_a|^2 + m |c_k - c_b|^2 - l m |c_a - c_b|^2 - rho_k^2 > -P >= 0 >= P
 ///
@@ -61,8 +61,8 @@ inline bool passes_certificate(double squared_distance, double weight_a, double 
 /// references are taken.
 ///
 /// Suppose that a's reference is put at its true place now, while b has strayed from its own by at
-/// most its skin s. The references are then at least d - s apart, d being the distance of the grains,
-/// and (2) asks for
+/// most its skin s. The references are then at least d - s apart, d being the distance of the
+/// grains, and (2) asks for
 ///
 ///     (d - s)^2 > (a + s)^2 + (b + s)^2,  that is  s^2 + 2 (a + b + d) s < d^2 - a^2 - b^2.   (3)
 ///

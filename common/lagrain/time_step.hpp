@@ -21,7 +21,7 @@ struct TimeScales {
   double safe_step = std::numeric_limits<double>::infinity();  ///< largest safe time step [s]
 };
 
-/// Fraction of the shortest collision above which a step is refused. A grain held by several
+/// The largest time step, as a fraction of the shortest collision. A grain held by several
 /// neighbours oscillates up to sqrt(3) times faster than a pair, and explicit schemes are stable up
 /// to 0.37 of a pair's contact time then; a tenth keeps the error small as well.
 inline constexpr double kLargestContactFraction = 0.1;
@@ -40,10 +40,10 @@ inline double largest_damped_phase(double damping_ratio) {
   return kFree / (std::sqrt(damped * damped + kFree) + damped);
 }
 
-/// Shortest collision and safe step over all pairs of materials that occur, with the lightest grain of each
-/// (the time grows with the mass; in Hertz's law it falls slowly with the radius, so grains of one
-/// material are taken to share a density), and the walls. A piston yields, like a grain of its mass.
-/// Where one law holds for all, all count as one material.
+/// Shortest collision and safe step over all pairs of materials that occur, with the lightest grain
+/// of each (the time grows with the mass; in Hertz's law it falls slowly with the radius, so grains
+/// of one material are taken to share a density), and the walls. A piston yields, like a grain of
+/// its mass. Where one law holds for all, all count as one material.
 template <int Dim, class Law, Needs needs>
 TimeScales time_scales(const Grains<Dim, needs>& g, const LawTable<Law>& laws,
                        const std::vector<Wall<Dim>>& walls) {

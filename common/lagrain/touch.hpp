@@ -52,6 +52,7 @@ struct MaybeTouch {
   Touch<Dim, Real> touch;
 };
 
+/// Step 2 of the paper for one pair, or one pair per lane: whether two grains touch, and how.
 template <Needs needs, int Dim, class Real>
 MaybeTouch<Dim, Real> touch_of(const Body<Dim, needs, Real>& i, const Body<Dim, needs, Real>& j) {
   using std::sqrt;
@@ -87,8 +88,9 @@ MaybeTouch<Dim, Real> touch_of(const Body<Dim, needs, Real>& i, const Body<Dim, 
   return result;
 }
 
-/// A grain of a mass [kg] against a wall whose surface is `distance` [m] from the grain's centre,
-/// with its unit normal towards the grain, and moves with `wall_velocity` [m/s].
+/// Whether a grain of a mass [kg] touches a wall, and how. The wall's surface is `distance` [m]
+/// from the grain's centre, has its unit normal towards the grain, and moves with `wall_velocity`
+/// [m/s].
 template <Needs needs, int Dim, class Real>
 MaybeTouch<Dim, Real> touch_of_wall(const Body<Dim, needs, Real>& i, const Real& mass,
                                     const Real& distance, const Vec<Dim, Real>& normal,

@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// What every dynamic regular triangulation offers, whatever its dimension. Dimensions 2 and 3 are
-/// built in dim2 and dim3; `common` only names the interface, so that the neighbourhood is written
+/// What every dynamic regular triangulation offers, whatever its dimension. The modules dim2 and
+/// dim3 have one each; `common` only names the interface, so that the neighbourhood is written
 /// once.
 
 #include <lagrain/edge_list.hpp>
@@ -50,7 +50,7 @@ concept RegularTriangulation = requires(T t, const T ct, std::span<const int> mo
   { t.move(moved, sites, weights) } -> std::same_as<UpdateReport>;
   ct.for_each_edge(visit);
   ct.for_each_neighbour(int{}, [](int) {});
-  // Those of the last update.
+  // Visits the edges that the last update made.
   ct.for_each_new_edge(visit);
   // All edges, sorted.
   { t.edges() } -> std::same_as<std::span<const EdgeList::Edge>>;
@@ -58,7 +58,7 @@ concept RegularTriangulation = requires(T t, const T ct, std::span<const int> mo
   { ct.size() } -> std::convertible_to<int>;
   { ct.site(int{}) } -> std::same_as<Vec<Dim>>;
   { ct.weight(int{}) } -> std::same_as<double>;
-  // What is wrong with it, checked exactly; nothing is.
+  // Says what is wrong with it, checked exactly: nothing.
   { ct.audit().empty() } -> std::same_as<bool>;
 };
 

@@ -43,7 +43,7 @@ class TriangulationNeighbourhood {
       : laziness_(laziness), follower_(laziness) {}
 
   static const char* name() { return "regular triangulation"; }
-  /// Regular for the inflated reference spheres, those of the last leap if T leaps; in a frame that
+  /// Regular for the reference balls, those of the last leap if T leaps; in a frame that
   /// drifts with the grains.
   const T& triangulation() const { return sites_.t; }
   const TriangulationCost& cost() const { return sites_.cost; }
@@ -215,8 +215,8 @@ class TriangulationNeighbourhood {
     for (const int i : sites_.placed) margin[i] = std::min(margin[i], sites_.room(i, place(i)));
   }
 
-  /// Weights are those of radii and skins, no grain waits, and the references are T's sites (which
-  /// those of grains that have walked since a leap are not).
+  /// Checks that weights are those of radii and skins, no grain waits, and the references are T's
+  /// sites (which those of grains that have walked since a leap are not).
   void audit_sites(const Eigen::VectorXd& radius, std::vector<std::string>& defects) const {
     for (int i = 0; i < size(); ++i) {
       const T& t = sites_.t;
@@ -231,7 +231,8 @@ class TriangulationNeighbourhood {
     if (!sites_.waiting.empty()) defects.push_back("grains wait for new references");
   }
 
-  /// The edges of T within reach; or, while T leaps, the pairs of reference spheres that meet.
+  /// Lists the pairs within reach: edges of T or, while T leaps, pairs of reference balls that
+  /// meet.
   void collect_near(const Columns<Dim>& x, const Eigen::VectorXd& radius,
                     const Eigen::VectorXd& margin, std::vector<Pair>& pairs) {
     now_.resize(static_cast<std::size_t>(size()));
@@ -260,8 +261,8 @@ class TriangulationNeighbourhood {
     }
   }
 
-  /// Every pair that T may lack has an end that lies on a failed edge or is hidden: tests all grains
-  /// around exactly these.
+  /// Every pair that T may lack has an end that lies on a failed edge or is hidden: tests all
+  /// grains around exactly these.
   void search_around_uncertain(const Columns<Dim>& x, const Eigen::VectorXd& radius,
                                const Eigen::VectorXd& margin, std::vector<Pair>& pairs) {
     sites_.cost.searched += static_cast<std::int64_t>(follower_.uncertain().size());

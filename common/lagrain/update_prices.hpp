@@ -7,11 +7,11 @@
 
 namespace lagrain {
 
-/// Prices [ns] of one core. Measured as `bench_lagrain` and `figures/run 14` measure updates against
-/// builds, and rounded. Only their ratios matter, and they change no result: a wrong price makes T
-/// leap earlier or later. T leaps once single moves have cost as much as one leap of all grains, so
-/// the choice costs at most about twice what the better one does; with a ratio wrong by a factor of
-/// two it costs at most about three times that.
+/// Prices [ns] on one core, as measured on the shaken beds of `bench_lagrain` and rounded; its
+/// update_against_build and figure 14 show moves and builds by themselves. Only their ratios
+/// matter. They change no result: a wrong price makes T leap earlier or later. T leaps once single
+/// moves have cost as much as one leap of all grains, so the choice costs at most about twice what
+/// the better one does; with a ratio wrong by a factor of two, at most about three times.
 template <int Dim>
 struct UpdatePrices {
   /// Moves one reference in T.

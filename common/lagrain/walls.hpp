@@ -14,7 +14,7 @@
 
 namespace lagrain {
 
-/// Everything on the far side of a plane (a line in 2D) is solid.
+/// A plane (a line in 2D) with everything on its far side solid.
 template <int Dim>
 struct HalfSpace {
   Vec<Dim> normal;  ///< unit, towards the grains [-]
@@ -37,9 +37,10 @@ struct Cylinder {
   Vec<Dim> axis;  ///< unit [-]; zero for a circle in the plane, and a ball in space
 };
 
+/// No motion.
 struct Fixed {};
 
-/// Constant velocity between two times.
+/// Motion with constant velocity between two times.
 template <int Dim>
 struct Steady {
   Vec<Dim> velocity;  ///< [m/s]
@@ -47,8 +48,8 @@ struct Steady {
   double stop = std::numeric_limits<double>::infinity();
 };
 
-/// Displacement amplitude sin(2 pi frequency (t - start)) between two times; at rest outside, after
-/// the end where it then is.
+/// Harmonic motion between two times: displacement amplitude sin(2 pi frequency (t - start)). The
+/// wall is at rest outside, after the end where it then is.
 template <int Dim>
 struct Shake {
   Vec<Dim> amplitude;    ///< [m]
@@ -57,7 +58,8 @@ struct Shake {
   double stop = std::numeric_limits<double>::infinity();
 };
 
-/// A guided mass: moves along its load, pushed by the load and by the grains; held until its start.
+/// Motion of a guided mass along its load, pushed by the load and by the grains. It is held until
+/// its start.
 template <int Dim>
 struct Piston {
   double mass;       ///< [kg]

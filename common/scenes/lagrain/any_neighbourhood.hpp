@@ -12,8 +12,8 @@
 
 namespace lagrain {
 
-/// Holds any neighbourhood behind one pointer. It is asked once per refresh of the near list, so
-/// that the virtual call costs nothing and models need not be compiled once per neighbourhood.
+/// Any neighbourhood behind one pointer. It is asked once per refresh of the near list, so the
+/// virtual call costs nothing, and models need not be compiled once per neighbourhood.
 template <int Dim>
 class AnyNeighbourhood {
  public:
