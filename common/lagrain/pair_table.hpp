@@ -22,8 +22,8 @@ struct WallPair {
   auto operator<=>(const WallPair&) const = default;
 };
 
-/// Sorted pairs and, where the law remembers, one memory each. History survives a repairs by
-/// merging two sorted lists; without memory nothing is stored and nothing merged.
+/// Sorted pairs and, where the law remembers, one memory each. Memories survive a refresh by merging
+/// two sorted lists; where the law remembers nothing, nothing is stored and nothing merged.
 template <class P, class Memory>
 class PairTable {
  public:
