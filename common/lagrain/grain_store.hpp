@@ -86,8 +86,8 @@ class GrainStore {
   static bool sort_is_due(std::int64_t step) {
     return step % kStepsBetweenSorts == kStepsBetweenSorts - 1;
   }
-  /// Whether there are so many grains that their order matters.
-  bool is_sorted() const { return count() > kSortFrom; }
+  /// Whether there are so many grains that the order of slots matters for speed.
+  bool order_matters() const { return count() > kSortFrom; }
   /// Gives the grains new slots if neighbours in space lie far apart in memory.
   /// @returns the new slot of each old one; empty if all stay where they are
   /// @pre all places are finite

@@ -252,7 +252,7 @@ class Simulation {
   }
 
   void sort_grains() {
-    if (!store_.is_sorted()) return;
+    if (!store_.order_matters()) return;
     store_.expect_finite(time());
     const std::vector<int> slot_of = store_.sort_if_mixed();
     if (slot_of.empty()) return;
