@@ -2,9 +2,10 @@
 
 namespace lagrain {
 
-template class ContactKernel<2, CundallStrack<LinearSpring>>;
-template class ContactKernel<2, CundallStrack<Hertz>>;
-template class ContactKernel<3, CundallStrack<LinearSpring>>;
-template class ContactKernel<3, CundallStrack<Hertz>>;
+#define LAGRAIN_KERNEL(word, Normal, Friction)       \
+  template class ContactKernel<2, Friction<Normal>>; \
+  template class ContactKernel<3, Friction<Normal>>;
+LAGRAIN_NORMAL_LAWS(LAGRAIN_KERNEL, CundallStrack)
+#undef LAGRAIN_KERNEL
 
 }  // namespace lagrain

@@ -2,9 +2,10 @@
 
 namespace lagrain {
 
-template class ContactKernel<2, LinearSpring>;
-template class ContactKernel<2, Hertz>;
-template class ContactKernel<3, LinearSpring>;
-template class ContactKernel<3, Hertz>;
+#define LAGRAIN_KERNEL(word, Normal, Friction)       \
+  template class ContactKernel<2, Friction<Normal>>; \
+  template class ContactKernel<3, Friction<Normal>>;
+LAGRAIN_NORMAL_LAWS(LAGRAIN_KERNEL, Frictionless)
+#undef LAGRAIN_KERNEL
 
 }  // namespace lagrain

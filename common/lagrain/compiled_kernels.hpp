@@ -1,27 +1,20 @@
 #pragma once
 /// @file
-/// The contact kernels that the library holds compiled. A program that steps one of these laws is
-/// compiled much faster if it includes this header; results are the same without.
+/// The contact kernels that the library holds compiled: those of all listed laws. A program that
+/// steps one of them is compiled much faster if it includes this header; results are the same
+/// without.
 
 #include <lagrain/contact_kernel.hpp>
-#include <lagrain/cundall_strack.hpp>
-#include <lagrain/hertz.hpp>
-#include <lagrain/hooke.hpp>
-#include <lagrain/viscous_friction.hpp>
+#include <lagrain/contact_laws.hpp>
 
 namespace lagrain {
 
-extern template class ContactKernel<2, LinearSpring>;
-extern template class ContactKernel<2, Hertz>;
-extern template class ContactKernel<2, ViscousFriction<LinearSpring>>;
-extern template class ContactKernel<2, ViscousFriction<Hertz>>;
-extern template class ContactKernel<2, CundallStrack<LinearSpring>>;
-extern template class ContactKernel<2, CundallStrack<Hertz>>;
-extern template class ContactKernel<3, LinearSpring>;
-extern template class ContactKernel<3, Hertz>;
-extern template class ContactKernel<3, ViscousFriction<LinearSpring>>;
-extern template class ContactKernel<3, ViscousFriction<Hertz>>;
-extern template class ContactKernel<3, CundallStrack<LinearSpring>>;
-extern template class ContactKernel<3, CundallStrack<Hertz>>;
+#define LAGRAIN_KERNEL(word, Normal, Friction)                \
+  extern template class ContactKernel<2, Friction<Normal>>; \
+  extern template class ContactKernel<3, Friction<Normal>>;
+#define LAGRAIN_KERNELS(word, Friction) LAGRAIN_NORMAL_LAWS(LAGRAIN_KERNEL, Friction)
+LAGRAIN_FRICTION_LAWS(LAGRAIN_KERNELS)
+#undef LAGRAIN_KERNELS
+#undef LAGRAIN_KERNEL
 
 }  // namespace lagrain
