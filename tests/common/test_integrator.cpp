@@ -126,7 +126,7 @@ TEST_SUITE("integrator") {
     const double coarse = (chain_places<Dim, Hertz, Motion>(law, dt, kSteps) - exact).norm();
     const double fine = (chain_places<Dim, Hertz, Motion>(law, dt / 4, 4 * kSteps) - exact).norm();
 
-    CHECK(observed_order(coarse, fine, 4) == doctest::Approx(S::order).epsilon(0.1));
+    CHECK(relative_error(observed_order(coarse, fine, 4), S::order) < 0.1);
   }
 
   TEST_CASE_TEMPLATE("on a smooth motion the energy error converges at the scheme's order", S,
@@ -139,7 +139,7 @@ TEST_SUITE("integrator") {
     const double coarse = chain_energy_error<Dim, Hertz, Motion>(law, dt, 250);
     const double fine = chain_energy_error<Dim, Hertz, Motion>(law, dt / 4, 1000);
 
-    CHECK(observed_order(coarse, fine, 4) == doctest::Approx(S::order).epsilon(0.1));
+    CHECK(relative_error(observed_order(coarse, fine, 4), S::order) < 0.1);
   }
 
   TEST_CASE_TEMPLATE("symplectic: the energy error of a smooth motion does not grow with time", S,
@@ -168,7 +168,7 @@ TEST_SUITE("integrator") {
     const double coarse = (chain_places<Dim, Law, Motion>(law, dt, kSteps) - exact).norm();
     const double fine = (chain_places<Dim, Law, Motion>(law, dt / 4, 4 * kSteps) - exact).norm();
 
-    CHECK(observed_order(coarse, fine, 4) == doctest::Approx(2).epsilon(0.1));
+    CHECK(relative_error(observed_order(coarse, fine, 4), 2) < 0.1);
   }
 
   TEST_CASE_TEMPLATE("where contacts open and close, fourth order is not kept", C,
@@ -200,7 +200,7 @@ TEST_SUITE("integrator") {
 
     const double order = observed_order(error(2), error(16), 8);
 
-    CHECK(order == doctest::Approx(2).epsilon(0.15));
+    CHECK(relative_error(order, 2) < 0.05);
   }
 
   TEST_CASE_TEMPLATE("the fourth-order scheme refuses what it cannot integrate", C,

@@ -2,6 +2,8 @@
 
 #include <lagrain/check.hpp>
 
+#include <support/tolerance.hpp>
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -46,15 +48,17 @@ TEST_SUITE("restitution") {
 
       const Impact impact = integrate_impact(zeta);
 
-      CHECK(clamped_restitution(zeta) == doctest::Approx(impact.restitution).epsilon(1e-4));
-      CHECK(clamped_contact_time(zeta) == doctest::Approx(impact.duration).epsilon(1e-4));
+      // The integration overshoots the end by up to a step of 1e-5. The force is zero at the end,
+      // so the speed hardly changes there.
+      CHECK(test::relative_error(clamped_restitution(zeta), impact.restitution) < 1e-9);
+      CHECK(test::relative_error(clamped_contact_time(zeta), impact.duration) < 1e-5);
     }
   }
 
   TEST_CASE("the damping solved for a restitution gives that restitution") {
     for (const double e : {1.0, 0.999, 0.9, 0.5, 0.2, 0.05, 1e-3}) {
       CAPTURE(e);
-      CHECK(clamped_restitution(damping_ratio_for(e)) == doctest::Approx(e).epsilon(1e-12));
+      CHECK(test::relative_error(clamped_restitution(damping_ratio_for(e)), e) < 1e-12);
     }
   }
 
@@ -64,8 +68,8 @@ TEST_SUITE("restitution") {
       return -l / std::hypot(std::numbers::pi, l);
     };
 
-    CHECK(clamped_restitution(textbook_ratio(0.5)) == doctest::Approx(0.550).epsilon(1e-3));
-    CHECK(clamped_restitution(textbook_ratio(0.2)) == doctest::Approx(0.325).epsilon(2e-3));
+    CHECK(test::relative_error(clamped_restitution(textbook_ratio(0.5)), 0.550) < 1e-3);
+    CHECK(test::relative_error(clamped_restitution(textbook_ratio(0.2)), 0.325) < 2e-3);
   }
 
   TEST_CASE("a restitution outside (0, 1] is refused") {

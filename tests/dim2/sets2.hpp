@@ -1,7 +1,6 @@
 #pragma once
 /// @file
-/// Sets of weighted sites that tests of the plane share, and what two triangulations are compared
-/// by.
+/// Sets of weighted sites that tests of the plane share, and how two triangulations are compared.
 
 #include <lagrain/random.hpp>
 #include <lagrain/triangulation2.hpp>

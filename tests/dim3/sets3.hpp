@@ -103,8 +103,8 @@ inline Sites polydisperse(Random& random, int count, double ratio, double overla
   return make_sites("polydisperse", rows, 1 / std::sqrt(ratio));
 }
 
-/// Equal spheres; the pitch 1 is representable, others are not, and then everything is nearly a
-/// tie.
+/// Equal spheres on a cubic lattice. With the pitch 1 every tie is exact; at other pitches the
+/// places are rounded, which leaves near ties.
 inline Sites cubic_lattice(int side, double pitch) {
   test::Rows<3> rows;
   for (int i = 0; i < side; ++i) {
@@ -146,8 +146,8 @@ inline Sites hcp_lattice(int side, double pitch) {
   return make_sites("hcp lattice", rows, pitch / 2);
 }
 
-/// Small integers: coincident, collinear, coplanar and cospherical sites with equal and different
-/// weights.
+/// Sites of small integers: there are coincident, collinear, coplanar and cospherical ones, with
+/// equal and with different weights.
 inline Sites integers(Random& random, int count, int range, int weights) {
   test::Rows<3> rows;
   for (int i = 0; i < count; ++i) {

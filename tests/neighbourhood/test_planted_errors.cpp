@@ -38,8 +38,8 @@ constexpr int kVisible = 10;
 
 // ---- Triangulations ----------------------------------------------------------------------------
 
-/// Sites of which two are hidden and one has been removed, with triangles or tetrahedra that are
-/// dead.
+/// A triangulation of sites of which two are hidden and one has been removed, so that it holds dead
+/// triangles or tetrahedra.
 template <int Dim>
 Triangulation<Dim> some_triangulation() {
   Random random(1);

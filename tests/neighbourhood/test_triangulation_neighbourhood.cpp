@@ -220,8 +220,7 @@ TEST_SUITE("triangulation_neighbourhood") {
 
   TEST_CASE_TEMPLATE(
       "a gas in flight, and one fast grain in it, miss nothing; references ahead of the grains "
-      "stay "
-      "within their skins, and every edge passes the certificate",
+      "stay within their skins, and every edge passes the certificate",
       S, Space<2>, Space<3>) {
     constexpr int Dim = S::Dim;
     for (const double fast : {1.0, 100.0}) {

@@ -8,6 +8,8 @@
 #include <lagrain/paint.hpp>
 #include <lagrain/random.hpp>
 
+#include <support/tolerance.hpp>
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -23,6 +25,7 @@ using namespace lagrain;
 using lagrain::test::heap;
 using lagrain::test::ink;
 using lagrain::test::pixel;
+using lagrain::test::relative_error;
 
 namespace {
 
@@ -79,7 +82,7 @@ TEST_SUITE("scene3") {
   TEST_CASE("the nearest point of a ball has its exact depth") {
     for (const bool perspective : {false, true}) {
       Scene3 one = one_ball(perspective);
-      CHECK(middle(detail::depths(one, 101, 101)) == doctest::Approx(4).epsilon(1e-6));
+      CHECK(relative_error(middle(detail::depths(one, 101, 101)), 4) < 1e-6);
 
       // Far smaller than the scene, and far from the origin.
       const Vec<3> far(1e4, 2e4, -3e4);
@@ -87,7 +90,7 @@ TEST_SUITE("scene3") {
       one.balls.push_back({far + Vec<3>(3, 3, 1), 0.01, kRed});
       one.camera.eye += far;
       one.camera.target += far;
-      CHECK(middle(detail::depths(one, 101, 101)) == doctest::Approx(4.99).epsilon(1e-6));
+      CHECK(relative_error(middle(detail::depths(one, 101, 101)), 4.99) < 1e-6);
     }
   }
 
@@ -118,12 +121,11 @@ TEST_SUITE("scene3") {
   TEST_CASE("a ball covers pi r^2 of the picture, in perspective that of its outline") {
     Scene3 one = one_ball();
     one.subframes = kPrintSubframes;
-    CHECK(covered(one, 401) == doctest::Approx(std::numbers::pi * 401 * 401 / 16).epsilon(2e-3));
+    CHECK(relative_error(covered(one, 401), std::numbers::pi * 401 * 401 / 16) < 2e-3);
 
     // From the distance D the outline of a ball has the slope r / sqrt(D^2 - r^2).
     one.camera.perspective = true;
-    CHECK(covered(one, 401) ==
-          doctest::Approx(std::numbers::pi * 401 * 401 / 16 * 25 / 24).epsilon(2e-3));
+    CHECK(relative_error(covered(one, 401), std::numbers::pi * 401 * 401 / 16 * 25 / 24) < 2e-3);
   }
 
   TEST_CASE("balls hidden behind a nearer one change nothing") {
@@ -255,8 +257,8 @@ TEST_SUITE("scene3") {
       one.cuts.push_back({{0, -2, 0}, 0.6});           // y < -0.3
       const std::vector<double> depths = detail::depths(one, 101, 101);
 
-      CHECK(middle(depths) == doctest::Approx(4.7).epsilon(1e-6));
-      CHECK(depths[50 * 101 + 62] == doctest::Approx(4.7).epsilon(1e-6));  // flat
+      CHECK(relative_error(middle(depths), 4.7) < 1e-6);
+      CHECK(relative_error(depths[50 * 101 + 62], 4.7) < 1e-6);            // flat
       CHECK(depths[50 * 101 + 76] > 4.71);                                 // the ball beyond
 
       // The face has the ball's colour, a little darker, all over.
@@ -273,7 +275,7 @@ TEST_SUITE("scene3") {
     Scene3 one = scene(4);
     one.tubes.push_back({{-1, 0, 0}, {1, 0, 0}, 0.5, kRed});
     one.cuts.push_back({{0, -1, 0}, 0});
-    CHECK(middle(detail::depths(one, 101, 101)) == doctest::Approx(5).epsilon(1e-6));
+    CHECK(relative_error(middle(detail::depths(one, 101, 101)), 5) < 1e-6);
 
     one.cuts[0].offset = -0.6;
     CHECK(middle(detail::depths(one, 101, 101)) == kNothing);
@@ -284,15 +286,15 @@ TEST_SUITE("scene3") {
     one.subframes = kPrintSubframes;
     one.tubes.push_back({{-1, 1, -0.5}, {1, 1, 0.7}, 0.25, kRed});
     const double length = std::hypot(2, 1.2);
-    CHECK(covered(one, 400) ==
-          doctest::Approx((length * 0.5 + std::numbers::pi / 16) * 100 * 100).epsilon(2e-3));
+    CHECK(relative_error(covered(one, 400), (length * 0.5 + std::numbers::pi / 16) * 100 * 100) <
+          2e-3);
 
     // Obliquely towards the eye: the surface lies r / sin(angle) before the axis.
     one.tubes = {{{0, -1, -1}, {0, 1, 1}, 0.25, kRed}};
     for (const bool perspective : {false, true}) {
       one.camera.perspective = perspective;
-      CHECK(middle(detail::depths(one, 101, 101)) ==
-            doctest::Approx(5 - 0.25 * std::numbers::sqrt2).epsilon(1e-6));
+      CHECK(relative_error(middle(detail::depths(one, 101, 101)), 5 - 0.25 * std::numbers::sqrt2) <
+            1e-6);
     }
   }
 
@@ -308,8 +310,7 @@ TEST_SUITE("scene3") {
         CHECK(brightness(image, p.x, p.y) == 0);
       }
       const View3 view(one.camera, {{0, 0}, {200, 200}});
-      CHECK(ink(image) ==
-            doctest::Approx(5 * ((view.point(b) - view.point(a)).norm() + 5)).epsilon(0.02));
+      CHECK(relative_error(ink(image), 5 * ((view.point(b) - view.point(a)).norm() + 5)) < 0.02);
 
       // Its middle is behind a ball that stands before it, and before one that stands behind.
       one.balls.push_back({0.5 * (a + b) - Vec<3>(0, 1, 0), 0.3, kRed});
@@ -408,8 +409,7 @@ TEST_SUITE("scene3") {
           const Vec<2> page(100 * aspect, 100);
           CHECK((low.array() > 0.0499 * page.array()).all());
           CHECK((high.array() < 0.9501 * page.array()).all());
-          CHECK(((high - low).array() / page.array()).maxCoeff() ==
-                doctest::Approx(0.9).epsilon(1e-9));
+          CHECK(relative_error(((high - low).array() / page.array()).maxCoeff(), 0.9) < 1e-9);
           CHECK((low + high - page).norm() < (field > 0 ? 15 : 1e-9));
         }
       }
@@ -424,9 +424,9 @@ TEST_SUITE("scene3") {
 
       CHECK((view.point({0, 3, 0}) - Vec<2>(60, 45)).norm() < 1e-12);
       CHECK((view.point({0.4, 0, 1}) - Vec<2>(70, 70)).norm() < 1e-12);
-      CHECK(view.depth({7, 1, 2}) == doctest::Approx(6));
-      CHECK(view.scale({0, 0, 0}) == doctest::Approx(25));
-      CHECK(view.scale({0, 5, 0}) == doctest::Approx(perspective ? 12.5 : 25));
+      CHECK(relative_error(view.depth({7, 1, 2}), 6) < 1e-15);
+      CHECK(relative_error(view.scale({0, 0, 0}), 25) < 1e-15);
+      CHECK(relative_error(view.scale({0, 5, 0}), perspective ? 12.5 : 25) < 1e-15);
     }
   }
 
@@ -519,6 +519,6 @@ TEST_SUITE("scene3") {
 
     CHECK(std::abs(brightness(alone, 30, 30) - brightness(more, 30, 30)) < 300);
     CHECK(pixel(more, 30, 30, 0) > pixel(more, 30, 30, 1));
-    CHECK(middle(detail::depths(one, 61, 61)) == doctest::Approx(4).epsilon(1e-6));
+    CHECK(relative_error(middle(detail::depths(one, 61, 61)), 4) < 1e-6);
   }
 }

@@ -1,13 +1,12 @@
 #pragma once
 /// @file
-/// The way for tests to what classes keep to themselves, to plant errors there that audits must
-/// find.
+/// Gives tests access to private members: they plant errors there, which audits have to find.
 
 #include <cstddef>
 
 namespace lagrain {
 
-/// Befriended by all that can be audited.
+/// Every class that can be audited names this one as a friend.
 struct AuditProbe {
   // Triangulations.
   static auto& topology(auto& t) { return t.topology_; }

@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// Clouds and scenes that try a neighbourhood: every list against brute force, every trajectory bit
-/// for bit, every step audited.
+/// Clouds and scenes that try a neighbourhood: every list is compared with brute force, every
+/// trajectory bit for bit, and every step is audited.
 
 #include <lagrain/all_pairs.hpp>
 #include <lagrain/audit.hpp>
@@ -84,9 +84,9 @@ void jostle(Cloud<Dim>& cloud, Random& random) {
   }
 }
 
-/// A few grains of the cloud stray; what the neighbourhood then tells of them is what brute force
-/// finds.
-/// @param centre, margin  of its last answer
+/// Lets a few grains of the cloud stray, and checks the pairs that the neighbourhood then gives for
+/// them against brute force.
+/// @param centre, margin  those of the neighbourhood's last answer [m]
 template <int Dim, AmendableNeighbourhood<Dim> N>
 void check_amendment(N& neighbourhood, Cloud<Dim>& cloud, Columns<Dim> centre,
                      Eigen::VectorXd margin, Random& random) {
@@ -219,13 +219,13 @@ MotionScene<Dim> size_mix(int count, double ratio, std::uint64_t seed) {
         fits = fits && (o.position - g.position).norm() > o.radius + r;
       }
     }
-    // In the plane, a tenth of its radius per safe step of a grain's own would be 0.1 r / (0.1 pi
-    // r) = 100 m/s: a third. In space such steps go with r^1.5.
+    // A third of the speed that crosses a tenth of the radius in a safe step of the grain's own:
+    // 100 m/s in the plane, where such steps go with r; in space they go with r^1.5.
     const double speed = 30 * std::pow(r, 1 - 0.5 * Dim);
     for (int d = 0; d < Dim; ++d) g.velocity[d] = speed * random.normal();
     scene.grains.push_back(g);
   }
-  // Numbers must not follow sizes.
+  // The grains are numbered at random, so that their numbers do not follow their sizes.
   for (int i = count - 1; i > 0; --i) {
     std::swap(scene.grains[static_cast<std::size_t>(i)],
               scene.grains[static_cast<std::size_t>(random.below(i + 1))]);
