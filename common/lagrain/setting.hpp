@@ -12,7 +12,7 @@ template <int Dim>
 struct Setting {
   Vec<Dim> gravity = Vec<Dim>::Zero();  ///< [m/s^2]
   double time_step = 0;                 ///< [s]
-  double largest_overlap = 0.3;         ///< of the smaller radius; beyond it the run stops [-]
+  double largest_overlap = kLargestOverlap;  ///< of the smaller radius; beyond it the run stops [-]
   int threads = 1;                      ///< that share a step; results do not depend on it
   InstructionSet instructions = instruction_sets().back();  ///< nor on this
 };

@@ -5,6 +5,7 @@
 
 #include <lagrain/check.hpp>
 #include <lagrain/contact_laws.hpp>
+#include <lagrain/touch.hpp>
 #include <lagrain/vec.hpp>
 #include <lagrain/walls.hpp>
 
@@ -109,7 +110,7 @@ struct Scene {
   FrictionModel friction = FrictionModel::none;
   IntegratorModel integrator = IntegratorModel::velocity_verlet;
   NeighbourhoodModel neighbourhood = NeighbourhoodModel::triangulation;
-  double largest_overlap = 0.3;           ///< of the smaller radius: beyond it the run stops [-]
+  double largest_overlap = kLargestOverlap;  ///< of the smaller radius: beyond it the run stops [-]
   double largest_initial_overlap = 0.01;  ///< of the smaller radius [-]
   bool audit = false;
   int audit_every = 100;  ///< steps, above 1,000 grains
