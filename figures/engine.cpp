@@ -78,7 +78,7 @@ double advance_to(Engine& engine, double t, const FigureOptions& options) {
   const double end = t - 0.5 * engine.time_step();
   double spent = 0;
   while (engine.time() < end) {
-    if (options.stop()) throw Interrupted();
+    options.check_stop();
     const double start = bench::processor_seconds();
     for (Eigen::Index k = 0; k < block && engine.time() < end; ++k) engine.step();
     spent += bench::processor_seconds() - start;

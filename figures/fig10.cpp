@@ -204,7 +204,7 @@ Outcome gas(const Choice& choice, const FigureOptions& options) {
   Outcome outcome;
   constexpr int kSamples = 50;
   for (int sample = 1; sample <= kSamples; ++sample) {
-    if (options.stop()) throw Interrupted();
+    options.check_stop();
     const double before = bench::processor_seconds();
     run->advance_to(scene.duration * sample / kSamples);
     spent += bench::processor_seconds() - before;
@@ -363,7 +363,7 @@ Pressure gas_pressure(const FigureOptions& options) {
       run->step();
       for (const Wall<2>& wall : run->walls()) force += wall.force.norm();
       ++steps;
-      if (options.stop()) throw Interrupted();
+      options.check_stop();
     }
     kinetic = run->ledger().kinetic;
     const double pressure = force / static_cast<double>(steps) / (4 * reach);

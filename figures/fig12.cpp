@@ -88,7 +88,7 @@ Misses stale_contacts(int count, double ratio, const FigureOptions& options) {
   Columns<Dim> reference;
   std::vector<Pair> edges;
   while (!run->finished()) {
-    if (options.stop()) throw Interrupted();
+    options.check_stop();
     options.progress(run->time() / scene.duration, "a triangulation that stands still");
     double moved = 2 * Misses::kBins;
     if (reference.cols() > 0) {
@@ -219,7 +219,7 @@ std::vector<Cost> measure(const Scene<2>& scene, const std::vector<Way>& all, in
   for (int round = 0; round < kRounds; ++round) {
     for (std::size_t k = 0; k < all.size(); ++k) {
       if (!runs[k]) continue;
-      if (options.stop()) throw Interrupted();
+      options.check_stop();
       const double start = bench::processor_seconds();
       for (int s = 0; s < steps; ++s) runs[k]->step();
       rounds[k].push_back(1e9 * (bench::processor_seconds() - start) / steps / runs[k]->count());

@@ -369,7 +369,7 @@ FigureResult draw_figure13(const FigureOptions& options) {
   const int turns = options.quick ? 1 : 3;
   double done = 0;
   const auto checkpoint = [&] {
-    if (options.stop()) throw Interrupted();
+    options.check_stop();
     options.progress(std::min(1.0, done++ / (18 * (turns + 2))), "predicates");
   };
   const OrientationMap map = orientation_map(kMapSide);

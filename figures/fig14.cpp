@@ -591,7 +591,7 @@ void tell_runs(const std::array<std::vector<RunCost>, 2>& measured, const Figure
 FigureResult draw_figure14(const FigureOptions& options) {
   double done = 0;
   const Checkpoint checkpoint = [&](const std::string& doing) {
-    if (options.stop()) throw Interrupted();
+    options.check_stop();
     options.progress(done / 4, doing);
   };
   const int rounds = options.quick ? 1 : 3;

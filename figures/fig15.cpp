@@ -96,7 +96,7 @@ std::vector<Row> measure(int count, const FigureOptions& options) {
     const auto settling = make_run(scene);
     while (!settling->finished()) {
       settling->step();
-      if (options.stop()) throw Interrupted();
+      options.check_stop();
       if (settling->steps() % 100 == 0) {
         options.progress(settling->time() / scene.duration, "settling a bed");
       }
@@ -116,7 +116,7 @@ std::vector<Row> measure(int count, const FigureOptions& options) {
   }
   for (int round = 0; round < kRounds; ++round) {
     for (std::size_t k = 0; k < runs.size(); ++k) {
-      if (options.stop()) throw Interrupted();
+      options.check_stop();
       const double start = bench::processor_seconds();
       for (int s = 0; s < steps; ++s) runs[k]->step();
       rows[k].ns.push_back(1e9 * (bench::processor_seconds() - start) / steps / runs[k]->count());

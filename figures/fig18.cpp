@@ -96,7 +96,7 @@ class HardCases {
         {"a shrinking box", &HardCases::shrinking}};
     for (std::size_t k = 0; k < parts.size(); ++k) {
       options_.progress(static_cast<double>(k) / static_cast<double>(parts.size()), parts[k].first);
-      look_();
+      check_stop_();
       (this->*parts[k].second)();
     }
     for (const Letter letter : {kGas, kStep, kFar}) {
@@ -163,12 +163,12 @@ class HardCases {
   // ---- At rest ---------------------------------------------------------------------------------
 
   void crystals() {
-    const std::vector<std::pair<std::string, Crystal>> kinds{
+    const std::vector<std::pair<std::string, Crystal>> crystals{
         {"square lattice of discs at rest", Crystal::square},
         {"hexagonal lattice of discs", Crystal::hexagonal},
         {"face-centred cubic lattice of spheres", Crystal::face_centred}};
-    for (const auto& [name, kind] : kinds) {
-      const CrystalAtRest r = crystal_at_rest(kind, look_);
+    for (const auto& [name, crystal] : crystals) {
+      const CrystalAtRest r = crystal_at_rest(crystal, check_stop_);
       row(name, "every tie that a triangulation has; a lattice that buckles or chatters",
           story(r) + "; " + std::to_string(r.contacts) + " contacts at the end, " +
               std::to_string(r.brute_force) + " by brute force, " + std::to_string(r.strangers) +
@@ -186,7 +186,7 @@ class HardCases {
               .series = {},
               .legend = Corner::bottom_left};
     const auto add = [&](int height, std::int64_t steps, int index) {
-      const Tower r = tower(height, steps, look_);
+      const Tower r = tower(height, steps, check_stop_);
       Series measured = series_style(index);
       measured.name = std::to_string(height) + " discs";
       const auto mode = [&](double step) {
@@ -223,12 +223,12 @@ class HardCases {
               "), walls the thrust to " + rounded(r.wall_error, 2) + " (overlap " +
               rounded(r.overlap, 2) + " r)");
     };
-    add("heavy disc on light ones, density 1000 : 1", heavy_on_light<2>(look_));
-    add("heavy sphere on light ones, density 1000 : 1", heavy_on_light<3>(look_));
+    add("heavy disc on light ones, density 1000 : 1", heavy_on_light<2>(check_stop_));
+    add("heavy sphere on light ones, density 1000 : 1", heavy_on_light<3>(check_stop_));
   }
 
   void dust() {
-    const GiantAndDust r = giant_and_dust(look_);
+    const GiantAndDust r = giant_and_dust(check_stop_);
     row("giant and 300 grains of dust, radii 1000 : 1",
         "tiny cells against a huge one; dust lost in the cleft",
         story(r) + "; " + std::to_string(r.rebuilds) + " rebuilds of the triangulation",
@@ -237,7 +237,7 @@ class HardCases {
   }
 
   void wedge() {
-    const Wedge r = tiny_disc_between_giants(look_);
+    const Wedge r = tiny_disc_between_giants(check_stop_);
     row("tiny disc wedged between two giants, 1 : 1000",
         "a contact force eleven times the weight, at a flat angle", story(r),
         "flanks bear " + rounded(r.force, 4) + " weights, closed form to " +
@@ -252,10 +252,10 @@ class HardCases {
           "speed handed on 19 times to " + rounded(std::abs(r.speed - 1), 2) + " (bound " +
               rounded(r.bound, 2) + "); at most " + rounded(r.sideways, 2) + " r off the row");
     };
-    add("20 discs in a row", row_of_grains<2>(false, look_));
-    add("20 discs in a slanted row", row_of_grains<2>(true, look_));
-    add("20 spheres in a row", row_of_grains<3>(false, look_));
-    add("20 spheres in a slanted row", row_of_grains<3>(true, look_));
+    add("20 discs in a row", row_of_grains<2>(false, check_stop_));
+    add("20 discs in a slanted row", row_of_grains<2>(true, check_stop_));
+    add("20 spheres in a row", row_of_grains<3>(false, check_stop_));
+    add("20 spheres in a slanted row", row_of_grains<3>(true, check_stop_));
   }
 
   void one_place() {
@@ -267,8 +267,8 @@ class HardCases {
               " pairs listed; they fly " + rounded(r.separation, 2) +
               " diameters apart, momentum kept to " + rounded(r.momentum, 2));
     };
-    add("10 discs at the same point", all_in_one_place<2>(look_));
-    add("10 spheres at the same point", all_in_one_place<3>(look_));
+    add("10 discs at the same point", all_in_one_place<2>(check_stop_));
+    add("10 spheres at the same point", all_in_one_place<3>(check_stop_));
   }
 
   void far() {
@@ -279,7 +279,7 @@ class HardCases {
     bit.name = "last bit of a place";
     FarAway million;
     for (const double distance : lengths_.distances) {
-      const FarAway r = far_from_origin(distance, look_);
+      const FarAway r = far_from_origin(distance, check_stop_);
       if (distance == 1e6) million = r;
       csv.row(distance, r.overlap_error, r.bound, r.last_bit, r.force_error);
       for (Series* s : {&error, &bound, &bit}) s->x.push_back(distance);
@@ -302,7 +302,7 @@ class HardCases {
   }
 
   void scales() {
-    const Scales r = nine_decades_of_radii(lengths_.scales_steps, look_);
+    const Scales r = nine_decades_of_radii(lengths_.scales_steps, check_stop_);
     std::string number;
     for (const Bounce& b : r.bounces) {
       number += (number.empty() ? "speed of " : "; of ") + rounded(b.radius, 2) + " m to " +
@@ -322,7 +322,7 @@ class HardCases {
     const std::vector<double> ways{0.01, 0.02, 0.03, 0.06, 0.1, 0.3, 1,  2,
                                    3,    4,    6,    10,   20,  50,  100};
     for (const double way : ways) {
-      const FastGrain r = fast_grain(way, lengths_.shots, look_);
+      const FastGrain r = fast_grain(way, lengths_.shots, check_stop_);
       for (Series* s : {&bounced, &refused, &unseen}) s->x.push_back(way);
       bounced.y.push_back(static_cast<double>(r.bounced) / r.shots);
       refused.y.push_back(static_cast<double>(r.refused) / r.shots);
@@ -355,7 +355,7 @@ class HardCases {
     Series energy = curve(0, "energy"), overlap = curve(1, "deepest overlap");
     std::string number;
     for (const double x : {0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0}) {
-      const StepSize r = collisions_at_step(x, look_);
+      const StepSize r = collisions_at_step(x, check_stop_);
       energy.x.push_back(x);
       energy.y.push_back(r.energy_error);
       overlap.x.push_back(x);
@@ -388,7 +388,7 @@ class HardCases {
               .series = {},
               .legend = Corner::top_right};
     const auto add = [&](FrictionModel model, int index) {
-      const Pile r = pile(model, lengths_.pile_steps, look_);
+      const Pile r = pile(model, lengths_.pile_steps, check_stop_);
       Series line = series_style(index);
       line.name = std::string(name_of(model)) + " friction";
       for (const PileSample& s : r.samples) {
@@ -417,7 +417,7 @@ class HardCases {
   }
 
   void gas() {
-    const Gas r = elastic_gas(lengths_.gas_grain_steps, look_);
+    const Gas r = elastic_gas(lengths_.gas_grain_steps, check_stop_);
     bench::Csv csv("grain_steps[-],energy_drift[-],random_walk[-]");
     Series drift = series_style(0);
     drift.name = "energy";
@@ -451,7 +451,7 @@ class HardCases {
 
   void not_numbers() {
     const std::filesystem::path folder = options_.out / "fig18_overflow";
-    const NotANumber r = not_a_number(folder, look_);
+    const NotANumber r = not_a_number(folder, check_stop_);
     const std::string danger = "it spreads silently";
     row("NaN in a scene file", danger, "refused: " + quoted(r.in_file), "0 steps");
     row("NaN from a program", danger, "refused: " + quoted(r.in_program), "0 steps");
@@ -464,7 +464,7 @@ class HardCases {
   }
 
   void walls() {
-    const PushedThrough r = pushed_through_walls(look_);
+    const PushedThrough r = pushed_through_walls(check_stop_);
     row("a lid that comes down too fast", "grains appear on its far side", story(r.lid),
         std::to_string(r.lid.steps) + " steps");
     row("a floor of mud", "grains sink through", story(r.soft_floor),
@@ -473,7 +473,7 @@ class HardCases {
 
   void shrinking() {
     const std::filesystem::path folder = options_.out / "fig18_shrinking";
-    const Shrinking r = shrinking_box(folder, look_);
+    const Shrinking r = shrinking_box(folder, check_stop_);
     row("a box that shrinks until nothing fits", "an explosion, or a hang", story(r),
         "jammed at a solid fraction of " + rounded(r.jammed, 3) + "; " +
             (r.last_is_sound ? "last.csv holds all " + std::to_string(r.grains) + " grains"
@@ -483,9 +483,7 @@ class HardCases {
 
   const FigureOptions& options_;
   Lengths lengths_;
-  Checkpoint look_ = [this] {
-    if (options_.stop()) throw Interrupted();
-  };
+  StopCheck check_stop_ = [this] { options_.check_stop(); };
   FigureResult result_;
   Table table_;
   std::vector<Diagram> diagrams_{kFar + 1};

@@ -331,7 +331,7 @@ FigureResult draw_figure4(const FigureOptions& options) {
   VideoWriter video(options.out / "fig4.mp4", kFramesPerSecond);
   std::vector<std::vector<double>> counts;
   for (std::size_t k = 0; k < frames.size(); ++k) {
-    if (options.stop()) throw Interrupted();
+    options.check_stop();
     options.progress(static_cast<double>(k) / static_cast<double>(frames.size()), "video");
     const FilmFrame& frame = frames[k];
     video.add(paint_rgba(picture_of(frame, flight.side), 144, Quality::frame));

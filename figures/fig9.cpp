@@ -76,7 +76,7 @@ Closest run_closest(const FigureOptions& options) {
   result.start = bulk_density(before, run->radii(), box).first;
   while (!run->finished()) {
     run->step();
-    if (options.stop()) throw Interrupted();
+    options.check_stop();
     if (run->steps() % 100 == 0) {
       options.progress(run->time() / run->scene().duration, "closest packing");
     }

@@ -11,6 +11,15 @@
 
 namespace lagrain {
 
+/// The user stopped a figure before it was drawn.
+struct Interrupted : std::runtime_error {
+  Interrupted() : std::runtime_error("stopped by the user") {}
+};
+
+/// A function that long work calls every few steps: it throws Interrupted once the user wants to
+/// stop. It may show progress as well. Empty where nothing has to stop.
+using StopCheck = std::function<void()>;
+
 /// What a figure is told.
 struct FigureOptions {
   std::filesystem::path out;     ///< folder for its files; it exists
@@ -21,11 +30,11 @@ struct FigureOptions {
       [](double, const std::string&) {};
   /// True once the user wants to stop; a figure then throws Interrupted.
   std::function<bool()> stop = [] { return false; };
-};
 
-/// The user stopped a figure before it was drawn.
-struct Interrupted : std::runtime_error {
-  Interrupted() : std::runtime_error("stopped by the user") {}
+  /// @throws Interrupted once the user wants to stop
+  void check_stop() const {
+    if (stop()) throw Interrupted();
+  }
 };
 
 /// A number of the paper beside ours. Text, with units: how many digits make sense differs.

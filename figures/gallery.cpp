@@ -141,7 +141,7 @@ void draw_figures(const std::vector<Figure>& all, const std::vector<int>& number
     write_file(article_file(figure, options.out), article(figure, result, options, taken));
     renew_gallery(all, options.out);
     report("figure " + std::to_string(figure.number) + ": " + figure.title + " (" + taken + " s)");
-    if (options.stop()) throw Interrupted();
+    options.check_stop();
   }
 }
 

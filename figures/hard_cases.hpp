@@ -1,20 +1,19 @@
 #pragma once
 /// @file
 /// Scenes that are hard for a program of this kind. Every case is a function that runs its scene
-/// and returns what happened, as numbers: the tests assert on them, figure 18 shows them.
+/// and returns what happened, as numbers: the tests assert on them, figure 18 shows them. Each
+/// heading below has its file in hard_cases/.
+
+#include "figure.hpp"
 
 #include <lagrain/scene.hpp>
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 namespace lagrain::hard_cases {
-
-/// Called every few steps of a case; may throw to end it. Empty: nobody looks.
-using Checkpoint = std::function<void()>;
 
 /// What one asks of every run.
 struct Outcome {
@@ -40,7 +39,7 @@ struct CrystalAtRest : Outcome {
   double explained = 0;    ///< the same by Clapeyron's theorem from the contact forces [m]
   double floor_error = 0;  ///< force on the floor against the weight, relative [-]
 };
-CrystalAtRest crystal_at_rest(Crystal crystal, const Checkpoint& checkpoint = {});
+CrystalAtRest crystal_at_rest(Crystal crystal, const StopCheck& check_stop = {});
 
 /// The number of steps, and the largest relative error of a contact force then.
 struct TowerSample {
@@ -57,7 +56,7 @@ struct Tower : Outcome {
   /// What the last bit of a place makes of the force of the top contact, relative [-].
   double last_bit = 0;
 };
-Tower tower(int height, std::int64_t steps, const Checkpoint& checkpoint = {});
+Tower tower(int height, std::int64_t steps, const StopCheck& check_stop = {});
 
 /// A grain of 1,000 times their density on two discs (four spheres) that touch, between walls.
 struct HeavyOnLight : Outcome {
@@ -67,7 +66,7 @@ struct HeavyOnLight : Outcome {
   double decay = 0;        ///< of the heavy grain's swing, by theory [1/step]
 };
 template <int Dim>
-HeavyOnLight heavy_on_light(const Checkpoint& checkpoint = {});
+HeavyOnLight heavy_on_light(const StopCheck& check_stop = {});
 
 /// Three hundred discs run into the cleft beneath the flank of one that is 1,000 times larger.
 struct GiantAndDust : Outcome {
@@ -77,7 +76,7 @@ struct GiantAndDust : Outcome {
   double residual = 0;              ///< of the ledger, of the energy that contacts have taken [-]
   std::int64_t rebuilds = 0;        ///< of the triangulation
 };
-GiantAndDust giant_and_dust(const Checkpoint& checkpoint = {});
+GiantAndDust giant_and_dust(const StopCheck& check_stop = {});
 
 /// A disc of a thousandth of their radius in the cleft between two discs on a floor.
 struct Wedge : Outcome {
@@ -85,7 +84,7 @@ struct Wedge : Outcome {
   double closed_form = 0;  ///< the same from the equilibrium of the three discs [-]
   double overlap = 0;      ///< of the small disc, of its radius [-]
 };
-Wedge tiny_disc_between_giants(const Checkpoint& checkpoint = {});
+Wedge tiny_disc_between_giants(const StopCheck& check_stop = {});
 
 // ---- Degenerate places -------------------------------------------------------------------------
 
@@ -98,7 +97,7 @@ struct Row : Outcome {
 };
 /// @param slanted  along the diagonal, on which places are rounded; else along an axis
 template <int Dim>
-Row row_of_grains(bool slanted, const Checkpoint& checkpoint = {});
+Row row_of_grains(bool slanted, const StopCheck& check_stop = {});
 
 /// All grains at the same point.
 struct OnePlace {
@@ -111,7 +110,7 @@ struct OnePlace {
   double separation = 0;  ///< smallest distance of two grains at the end, of their diameter [-]
 };
 template <int Dim>
-OnePlace all_in_one_place(const Checkpoint& checkpoint = {});
+OnePlace all_in_one_place(const StopCheck& check_stop = {});
 
 /// A crystal far from the origin against the same at the origin.
 struct FarAway : Outcome {
@@ -121,7 +120,7 @@ struct FarAway : Outcome {
   double force_error = 0;    ///< largest difference of a contact force, of a grain's weight [-]
 };
 /// @param distance  of the crystal's corner from the origin along every axis, in radii
-FarAway far_from_origin(double distance, const Checkpoint& checkpoint = {});
+FarAway far_from_origin(double distance, const StopCheck& check_stop = {});
 
 /// A disc of the given radius that bounces off one of 1 km.
 struct Bounce {
@@ -135,7 +134,7 @@ struct Bounce {
 struct Scales : Outcome {
   std::vector<Bounce> bounces;
 };
-Scales nine_decades_of_radii(std::int64_t steps, const Checkpoint& checkpoint = {});
+Scales nine_decades_of_radii(std::int64_t steps, const StopCheck& check_stop = {});
 
 // ---- Speed and step ----------------------------------------------------------------------------
 
@@ -150,7 +149,7 @@ struct FastGrain : Outcome {
   double expected = 0;  ///< share of the unseen: those for whom no step ends in a deep overlap [-]
   double bounce_up_to = 0;  ///< the way in a step up to which a bounce keeps to the limit, in radii
 };
-FastGrain fast_grain(double way, int shots, const Checkpoint& checkpoint = {});
+FastGrain fast_grain(double way, int shots, const StopCheck& check_stop = {});
 
 /// The answer to a time step of so many safe ones: empty if it is accepted.
 std::string refusal_of_step(double safe_steps);
@@ -162,7 +161,7 @@ struct StepSize : Outcome {
   double energy_error = 0;   ///< worst of all phases, relative [-]
   double overlap_error = 0;  ///< of the deepest overlap against Hertz's, worst, relative [-]
 };
-StepSize collisions_at_step(double safe_steps, const Checkpoint& checkpoint = {});
+StepSize collisions_at_step(double safe_steps, const StopCheck& check_stop = {});
 
 // ---- Long runs ---------------------------------------------------------------------------------
 
@@ -185,7 +184,7 @@ struct Pile : Outcome {
   double unbalanced = 0;      ///< largest force left on a grain at the end, of its weight [-]
 };
 /// @param friction  elastic: the pile must stand. Viscous: it creeps.
-Pile pile(FrictionModel friction, std::int64_t steps, const Checkpoint& checkpoint = {});
+Pile pile(FrictionModel friction, std::int64_t steps, const StopCheck& check_stop = {});
 
 /// Grain-steps, and how far the energy is from the start's then.
 struct GasSample {
@@ -203,7 +202,7 @@ struct Gas : Outcome {
   double random_walk = 0;
   double open_contacts = 0;  ///< what the largest number of open contacts may add, relative [-]
 };
-Gas elastic_gas(std::int64_t grain_steps, const Checkpoint& checkpoint = {});
+Gas elastic_gas(std::int64_t grain_steps, const StopCheck& check_stop = {});
 
 // ---- What must stop ----------------------------------------------------------------------------
 
@@ -216,14 +215,14 @@ struct NotANumber {
   Outcome huge;                ///< a grain at 1e150 m/s, whose square overflows
 };
 /// @param folder  for the run that breaks off; made, and overwritten
-NotANumber not_a_number(const std::filesystem::path& folder, const Checkpoint& checkpoint = {});
+NotANumber not_a_number(const std::filesystem::path& folder, const StopCheck& check_stop = {});
 
 /// Discs under a lid that comes down much too fast, and on a floor that is much too soft.
 struct PushedThrough {
   Outcome lid;
   Outcome soft_floor;
 };
-PushedThrough pushed_through_walls(const Checkpoint& checkpoint = {});
+PushedThrough pushed_through_walls(const StopCheck& check_stop = {});
 
 /// A box whose four walls move inwards until nothing fits.
 struct Shrinking : Outcome {
@@ -232,6 +231,6 @@ struct Shrinking : Outcome {
   bool last_is_sound = false;  ///< last.csv holds all grains, finite and within the box
 };
 /// @param folder  for the run; made, and overwritten
-Shrinking shrinking_box(const std::filesystem::path& folder, const Checkpoint& checkpoint = {});
+Shrinking shrinking_box(const std::filesystem::path& folder, const StopCheck& check_stop = {});
 
 }  // namespace lagrain::hard_cases

@@ -278,7 +278,7 @@ class Harness {
           const std::function<void(const SpeedResults&)>& after_scene)
       : options_(options), lammps_(lammps), after_scene_(after_scene) {
     checkpoint_ = [this] {
-      if (options_.stop()) throw Interrupted();
+      options_.check_stop();
       options_.progress(done_ / scenes_, doing_);
     };
   }
@@ -640,7 +640,7 @@ class Harness {
     try {
       f();
     } catch (const SimulationError& error) {
-      if (options_.stop()) throw Interrupted();  // Ctrl-C reaches LAMMPS too
+      options_.check_stop();  // Ctrl-C reaches LAMMPS too
       if (k == 0) throw;
       auto& entry = match.entries[k];
       results_.notes.push_back(match.scene.name + ", " + entry.name + ": " + error.what());

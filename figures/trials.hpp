@@ -5,6 +5,7 @@
 
 #include "figure.hpp"
 #include "measure.hpp"
+#include "scene_run.hpp"
 
 #include <lagrain/run.hpp>
 
@@ -58,8 +59,8 @@ Trial<Dim> run_trial(Scene<Dim> scene, double step, const FigureOptions& options
   std::vector<double> costs;
   double all = 0;
   do {
-    if (options.stop()) throw Interrupted();
-    trial.run = make_run(scene, 1);
+    options.check_stop();
+    trial.run = make_scene_run(scene, 1);
     const double start = bench::processor_seconds();
     while (!trial.run->finished()) trial.run->step();
     const double spent = bench::processor_seconds() - start;
