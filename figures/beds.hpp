@@ -3,7 +3,8 @@
 /// Beds of grains for the benchmark and the speed report: settled, of like and of unlike sizes,
 /// shaken, collapsing, hit.
 
-#include <lagrain/compiled_kernels.hpp>
+#include "figure.hpp"
+
 #include <lagrain/cundall_strack.hpp>
 #include <lagrain/grains.hpp>
 #include <lagrain/hooke.hpp>
@@ -18,7 +19,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <numbers>
 #include <string>
 #include <thread>
@@ -54,9 +54,6 @@ struct Bed {
 
   int count() const { return static_cast<int>(grains.size()); }
 };
-
-/// Called now and then while a bed is made; may throw to stop it.
-using Checkpoint = std::function<void()>;
 
 template <int Dim, class N>
 BedSimulation<Dim, N> simulate(const Bed<Dim>& bed, N neighbourhood = {}) {
@@ -102,16 +99,14 @@ void measure_height(Bed<Dim>& bed) {
 
 /// The bed so many steps later. Memories of contacts stay behind: every contender starts without.
 template <int Dim>
-void advance(Bed<Dim>& bed, int steps, const Checkpoint& checkpoint) {
+void advance(Bed<Dim>& bed, int steps, const StopCheck& check_stop) {
   auto sim = simulate<Dim, TriangulationNeighbourhood<Dim>>(bed);
   // The same bits with any number of threads, and only runs in turns are measured.
-  if (bed.count() > kShareFrom) {
-    sim.use_threads(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
-  }
+  if (bed.count() > kShareFrom) sim.use_threads(std::max(1U, std::thread::hardware_concurrency()));
   constexpr int kBetweenChecks = 100;
   for (int s = 0; s < steps; s += kBetweenChecks) {
     sim.step(std::min(kBetweenChecks, steps - s));
-    checkpoint();
+    check_stop();
   }
   const auto& g = sim.grains();
   for (int i = 0; i < g.size(); ++i) {
@@ -188,19 +183,19 @@ struct Stage {
 /// would move again.
 template <int Dim>
 void settle(Bed<Dim>& bed, double radius, double smallest, const std::vector<Stage>& stages,
-            const Checkpoint& checkpoint) {
+            const StopCheck& check_stop) {
   constexpr double kSettlingFriction = 0.1, kSettlingRestitution = 0.1;
   for (const Stage& stage : stages) {
     choose_law<Dim>(bed, radius, smallest, kSettlingRestitution, stage.softness);
     bed.law.friction = kSettlingFriction;
     halt(bed);
-    advance<Dim>(bed, steps_for(bed, radius, stage.time), checkpoint);
+    advance<Dim>(bed, steps_for(bed, radius, stage.time), check_stop);
   }
 }
 
 /// Grains in a box that have come to rest.
 template <int Dim>
-Bed<Dim> pour(const Pour<Dim>& what, const Checkpoint& checkpoint) {
+Bed<Dim> pour(const Pour<Dim>& what, const StopCheck& check_stop) {
   Bed<Dim> bed;
   bed.size.setConstant(what.width);
   bed.walls = open_box<Dim>(bed.size);
@@ -209,7 +204,7 @@ Bed<Dim> pour(const Pour<Dim>& what, const Checkpoint& checkpoint) {
   settle<Dim>(bed, what.radius, what.smallest,
               Dim == 2 ? std::vector<Stage>{{4, 25}, {2, 6}, {1, 4}}
                        : std::vector<Stage>{{16, 15}, {4, 3}, {1, 3}},
-              checkpoint);
+              check_stop);
   choose_law<Dim>(bed, what.radius, what.smallest);
   return bed;
 }
@@ -239,7 +234,7 @@ Bed<Dim> tiled(const Bed<Dim>& tile, const std::vector<int>& copies) {
 /// Large grains stand on the floor, in a row (in space in rows), in place of the small ones that
 /// were there.
 template <int Dim>
-void put_large_grains(Bed<Dim>& bed, double radius, int count, const Checkpoint& checkpoint) {
+void put_large_grains(Bed<Dim>& bed, double radius, int count, const StopCheck& check_stop) {
   const int rows = Dim == 2 ? 1
                             : std::max(1, static_cast<int>(std::lround(std::sqrt(
                                               count * bed.size[Dim == 2 ? 0 : 1] / bed.size[0]))));
@@ -268,7 +263,7 @@ void put_large_grains(Bed<Dim>& bed, double radius, int count, const Checkpoint&
   });
   bed.grains.insert(bed.grains.end(), large.begin(), large.end());
   // Not softened: a bed this wide would leap when it hardens.
-  settle<Dim>(bed, ordinary, smallest, {{1, Dim == 2 ? 3 : 8}}, checkpoint);
+  settle<Dim>(bed, ordinary, smallest, {{1, Dim == 2 ? 3 : 8}}, check_stop);
   choose_law<Dim>(bed, ordinary, smallest);
 }
 
@@ -280,7 +275,7 @@ inline double shake_period(double radius) {
 /// Shakes the box up and down by one radius with four times gravity, and stops where it turns, at
 /// its lowest: every contender goes on from there.
 template <int Dim>
-void shake(Bed<Dim>& bed, double radius, const Checkpoint& checkpoint) {
+void shake(Bed<Dim>& bed, double radius, const StopCheck& check_stop) {
   const double period = shake_period(radius);
   const double to_the_lowest = 1.75 * period;
   const int steps = static_cast<int>(std::lround(to_the_lowest / bed.setting.time_step));
@@ -290,7 +285,7 @@ void shake(Bed<Dim>& bed, double radius, const Checkpoint& checkpoint) {
     }
   };
   set(0);
-  advance<Dim>(bed, steps, checkpoint);
+  advance<Dim>(bed, steps, check_stop);
   set(-to_the_lowest);
 }
 
