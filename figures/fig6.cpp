@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,8 +31,61 @@ constexpr std::array<Row, 3> kRows{{{"packing_1484.toml", 1484, "0.04", 0.52},
                                     {"packing_6944.toml", 6944, "0.02", 0.54}}};
 constexpr std::array<double, 6> kFrictions{0, 0.1, 0.2, 0.3, 0.5, 0.8};
 
+/// The packings of the figure.
+struct Figure6 {
+  double own_friction = 0;        ///< of the scene files [-]
+  double shaking = 0;             ///< how long the packing of (f) is shaken [s]
+  std::vector<double> frictions;  ///< of (e) [-]
+  /// Those of kRows, the shaken one, one for each friction, and all but the first of kRows rough.
+  std::vector<Packing> all;
+
+  const Packing& shaken() const { return all[kRows.size()]; }
+  std::span<const Packing> swept() const {
+    return std::span(all).subspan(kRows.size() + 1, frictions.size());
+  }
+  /// The k-th of kRows with the largest friction.
+  const Packing& rough(std::size_t k) const {
+    return k == 0 ? swept().back() : all[kRows.size() + frictions.size() + k];
+  }
+};
+
+Figure6 make_figure6(const FigureOptions& options) {
+  Figure6 figure;
+  std::vector<PackingJob> jobs;
+  for (const Row& row : kRows) {
+    const Scene<3> scene = packing_scene(options, row.file);
+    jobs.push_back({"$r$ = " + shortest(std::get<double>(scene.fills[0].radius)), scene});
+  }
+  const Scene<3> base = jobs[0].scene;
+  figure.own_friction = base.law.friction;
+  figure.shaking = options.quick ? 1 : 4;
+  jobs.push_back({"shaken", shaken(base, figure.shaking)});
+  for (const double mu : kFrictions) {
+    if (options.quick && mu != 0 && mu != base.law.friction && mu != kFrictions.back()) continue;
+    figure.frictions.push_back(mu);
+    jobs.push_back({"friction " + shortest(mu), with_friction(base, mu)});
+  }
+  for (std::size_t k = 1; k < kRows.size(); ++k) {
+    jobs.push_back({jobs[k].name + ", rough", with_friction(jobs[k].scene, kFrictions.back())});
+  }
+  figure.all = run_packings(jobs, options, options.out / "fig6_density.csv");
+  return figure;
+}
+
+/// Density by the piston while it presses.
+Plot pressing_plot(const Figure6& figure) {
+  Plot plot{.x = {.label = "time [s]", .low = 0.5, .high = 2},
+            .y = {.label = "density", .low = 0.2, .high = 0.6},
+            .series = {},
+            .legend = Corner::bottom_right};
+  for (std::size_t k = 0; k < kRows.size(); ++k) {
+    plot.series.push_back(density_series(figure.all[k], static_cast<int>(k), 0.5));
+  }
+  return plot;
+}
+
 /// Density by the piston and within, over friction.
-Plot friction_plot(const std::vector<double>& friction, const std::vector<Packing>& packings) {
+Plot friction_plot(const std::vector<double>& friction, std::span<const Packing> packings) {
   Series piston = series_style(0), bulk = series_style(1), paper = series_style(2);
   piston.name = "by the piston";
   piston.marker = Marker::disc;
@@ -50,117 +104,102 @@ Plot friction_plot(const std::vector<double>& friction, const std::vector<Packin
           .series = {piston, bulk, paper}};
 }
 
-}  // namespace
+Plot shaking_plot(const Figure6& figure) {
+  Series series = density_series(figure.shaken(), 0, 1.8);
+  series.name = "";
+  series.width = 0.6;
+  return {
+      .x = {.label = "time [s]"}, .y = {.label = "density, shaken from 2 s"}, .series = {series}};
+}
 
-FigureResult draw_figure6(const FigureOptions& options) {
-  std::vector<PackingJob> jobs;
-  for (const Row& row : kRows) {
-    const Scene<3> scene = packing_scene(options, row.file);
-    jobs.push_back({"$r$ = " + shortest(std::get<double>(scene.fills[0].radius)), scene});
-  }
-  const Scene<3> base = jobs[0].scene;
-  const double shaking = options.quick ? 1 : 4;  // [s]
-  jobs.push_back({"shaken", shaken(base, shaking)});
-  std::vector<double> frictions;
-  for (const double mu : kFrictions) {
-    if (options.quick && mu != 0 && mu != base.law.friction && mu != kFrictions.back()) continue;
-    frictions.push_back(mu);
-    jobs.push_back({"friction " + shortest(mu), with_friction(base, mu)});
-  }
-  const std::size_t sweep_end = jobs.size();
-  for (std::size_t k = 1; k < kRows.size(); ++k) {
-    jobs.push_back({jobs[k].name + ", rough", with_friction(jobs[k].scene, kFrictions.back())});
-  }
-  const std::vector<Packing> packings =
-      run_packings(jobs, options, options.out / "fig6_density.csv");
-  const Packing& shook = packings[3];
-  const std::vector<Packing> swept(packings.begin() + 4,
-                                   packings.begin() + static_cast<std::ptrdiff_t>(sweep_end));
-
+DisplayList picture_of(const Figure6& figure, bool quick) {
   const double gap = 12, third = (style::kPage - 2 * gap) / 3, plot_height = 130;
   DisplayList list{.width = style::kPage,
                    .height = 14 + third + 34 + plot_height + 4,
                    .title = "lagrain, figure 6"};
   const double top = list.height - 14 - third;
-  FigureResult result;
   for (std::size_t k = 0; k < kRows.size(); ++k) {
-    const Packing& p = packings[k];
+    const Packing& p = figure.all[k];
     const double x = static_cast<double>(k) * (third + gap);
-    const std::string count = std::to_string(p.radius.size());
-    add_packing(list, {x, top}, third, p, ColourBy::height, options.quick,
-                "$n$ = " + count + ", $r$ = " + shortest(p.radius[0]) +
+    add_packing(list, {x, top}, third, p, ColourBy::height, quick,
+                "$n$ = " + std::to_string(p.radius.size()) + ", $r$ = " + shortest(p.radius[0]) +
                     " m: $d$ = " + digits(p.final_density()));
-    list.add(Label{.text = std::string("(") + "abc"[k] + ")",
-                   .at = {x, list.height - 4},
-                   .size = style::kTitle,
-                   .along = Along::top});
-    const double difference = p.final_density() - kRows[k].paper;
-    const double rough = (k == 0 ? swept.back() : packings[sweep_end + k - 1]).final_density();
-    result.comparisons.push_back(
-        {"density of n = " + std::to_string(kRows[k].count) + ", r = " + kRows[k].radius +
-             (options.quick ? " (quick: an eighth as many, twice as large)" : ""),
-         shortest(kRows[k].paper),
-         digits(p.final_density()) + " by the piston (" + (difference < 0 ? "" : "+") +
-             rounded(difference, 2) + "), " + bulk_text(p) + ": the walls cost " +
-             digits(p.bulk - p.final_density()) + ", randomness " +
-             digits(kClosestPacking - p.bulk) + " of the closest packing's 0.7405. With friction " +
-             shortest(kFrictions.back()) + " in place of " + shortest(base.law.friction) +
-             " it is " + digits(rough) + " (" + (rough < kRows[k].paper ? "" : "+") +
-             rounded(rough - kRows[k].paper, 2) + ")" +
-             (std::abs(rough - kRows[k].paper) < 0.01
-                  ? ": a rougher material accounts for the difference"
-                  : "")});
+    add_title(list, {x, list.height - 4}, std::string("(") + "abc"[k] + ")");
   }
-
-  const auto place = [&](std::size_t k, const char* letter) {
+  const std::array<Plot, 3> plots{
+      pressing_plot(figure), friction_plot(figure.frictions, figure.swept()), shaking_plot(figure)};
+  for (std::size_t k = 0; k < plots.size(); ++k) {
     const double x = static_cast<double>(k) * (third + gap);
-    list.add(Label{.text = letter, .at = {x, plot_height + 6}, .size = style::kTitle});
-    return Box{{x, 0}, {x + third, plot_height}};
-  };
-  Plot pressing{.x = {.label = "time [s]", .low = 0.5, .high = 2},
-                .y = {.label = "density", .low = 0.2, .high = 0.6},
-                .series = {},
-                .legend = Corner::bottom_right};
-  for (std::size_t k = 0; k < kRows.size(); ++k) {
-    pressing.series.push_back(density_series(packings[k], static_cast<int>(k), 0.5));
+    list.add(Label{.text = std::string("(") + "def"[k] + ")",
+                   .at = {x, plot_height + 6},
+                   .size = style::kTitle});
+    add_plot(list, {{x, 0}, {x + third, plot_height}}, plots[k]);
   }
-  add_plot(list, place(0, "(d)"), pressing);
-  add_plot(list, place(1, "(e)"), friction_plot(frictions, swept));
-  Series shaken_series = density_series(shook, 0, 1.8);
-  shaken_series.name = "";
-  shaken_series.width = 0.6;
-  add_plot(list, place(2, "(f)"),
-           {.x = {.label = "time [s]"},
-            .y = {.label = "density, shaken from 2 s"},
-            .series = {shaken_series}});
-  paint_png(list, options.out / "fig6.png", 300);
-  paint_pdf(list, options.out / "fig6.pdf");
-  write_file(options.out / "fig6_packing.csv", packing_csv(packings[2]));
+  return list;
+}
 
+Comparison comparison_of(const Figure6& figure, std::size_t k, bool quick) {
+  const Row& row = kRows[k];
+  const Packing& p = figure.all[k];
+  const double rough = figure.rough(k).final_density();
+  return {
+      "density of n = " + std::to_string(row.count) + ", r = " + row.radius + quick_text(quick),
+      shortest(row.paper),
+      digits(p.final_density()) + " by the piston (" +
+          difference_text(p.final_density(), row.paper) + "), " + bulk_text(p) +
+          ": the walls cost " + digits(p.bulk - p.final_density()) + ", randomness " +
+          digits(kClosestPacking - p.bulk) + " of the closest packing's 0.7405. With friction " +
+          shortest(kFrictions.back()) + " in place of " + shortest(figure.own_friction) +
+          " it is " + digits(rough) + " (" + difference_text(rough, row.paper) + ")" +
+          (std::abs(rough - row.paper) < 0.01 ? ": a rougher material accounts for the difference"
+                                              : "")};
+}
+
+void write_friction_table(const Figure6& figure, const std::filesystem::path& file) {
   std::string table = "friction[-],density_by_piston[-],density_within[-],coordination[-]\n";
+  const std::span<const Packing> swept = figure.swept();
   for (std::size_t k = 0; k < swept.size(); ++k) {
-    table += shortest(frictions[k]) + "," + shortest(swept[k].final_density()) + "," +
+    table += shortest(figure.frictions[k]) + "," + shortest(swept[k].final_density()) + "," +
              shortest(swept[k].bulk) + "," + shortest(swept[k].statistics.coordination) + "\n";
   }
-  write_file(options.out / "fig6_friction.csv", table);
+  write_file(file, table);
+}
 
-  result.caption =
-      "(a) to (c) Spheres dropped at random into the unit cube, pressed by a piston of a tenth of "
-      "their weight, after 2 s; colours are heights. (d) Density by the piston's height. (e) The "
-      "packing of (a) with other frictions (the paper does not state its own; ours is " +
-      shortest(base.law.friction) +
-      "): by the piston's height, which counts the gaps at the walls, and within the Laguerre "
-      "cells that keep away from them. (f) The packing of (a) shaken along (1, 0, 1) with " +
-      rounded(1000 * kShakeAmplitude, 2) + " mm and " + rounded(kShakeFrequency, 2) +
-      " Hz along each axis: the dips are the piston, thrown up.";
-  result.facts = packing_facts(packings);
-  result.facts.push_back(
-      {"frictionless to rough, by the piston",
-       digits(swept.front().final_density()) + " to " + digits(swept.back().final_density())});
-  result.facts.push_back({"shaken for " + rounded(shaking, 2) + " s",
-                          digits(packings[0].final_density()) + " becomes " +
+std::string caption_of(const Figure6& figure) {
+  return "(a) to (c) Spheres dropped at random into the unit cube, pressed by a piston of a tenth "
+         "of their weight, after 2 s; colours are heights. (d) Density by the piston's height. (e) "
+         "The packing of (a) with other frictions (the paper does not state its own; ours is " +
+         shortest(figure.own_friction) +
+         "): by the piston's height, which counts the gaps at the walls, and within the Laguerre "
+         "cells that keep away from them. (f) The packing of (a) shaken along (1, 0, 1) with " +
+         rounded(1000 * kShakeAmplitude, 2) + " mm and " + rounded(kShakeFrequency, 2) +
+         " Hz along each axis: the dips are the piston, thrown up.";
+}
+
+}  // namespace
+
+FigureResult draw_figure6(const FigureOptions& options) {
+  const Figure6 figure = make_figure6(options);
+  const DisplayList picture = picture_of(figure, options.quick);
+  paint_png(picture, options.out / "fig6.png", 300);
+  paint_pdf(picture, options.out / "fig6.pdf");
+  write_file(options.out / "fig6_packing.csv", packing_csv(figure.all[2]));
+  write_friction_table(figure, options.out / "fig6_friction.csv");
+
+  FigureResult result;
+  result.caption = caption_of(figure);
+  for (std::size_t k = 0; k < kRows.size(); ++k) {
+    result.comparisons.push_back(comparison_of(figure, k, options.quick));
+  }
+  result.facts = packing_facts(figure.all);
+  const Packing &smooth = figure.swept().front(), &rough = figure.swept().back();
+  result.facts.push_back({"frictionless to rough, by the piston",
+                          digits(smooth.final_density()) + " to " + digits(rough.final_density())});
+  const Packing &still = figure.all[0], &shook = figure.shaken();
+  result.facts.push_back({"shaken for " + rounded(figure.shaking, 2) + " s",
+                          digits(still.final_density()) + " becomes " +
                               digits(shook.final_density()) + " by the piston, " +
-                              digits(packings[0].bulk) + " becomes " + digits(shook.bulk) +
+                              digits(still.bulk) + " becomes " + digits(shook.bulk) +
                               " away from the walls"});
   result.pictures = {"fig6.png", "fig6.pdf"};
   result.downloads = {"fig6_density.csv",

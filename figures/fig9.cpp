@@ -6,15 +6,21 @@
 // figures 6 and 7 on one axis with the closest packing's.
 
 #include "packing.hpp"
+#include "scene_run.hpp"
 
 #include <lagrain/output.hpp>
 #include <lagrain/paint.hpp>
 #include <lagrain/style.hpp>
 #include <lagrain/triangulation3.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace lagrain::figures {
@@ -59,6 +65,7 @@ Scene<3> closest_packing(int across, int layers) {
   return scene;
 }
 
+/// The closest packing after its run.
 struct Closest {
   Packing packing;
   double start = 0;          ///< density within, before it carries itself
@@ -68,7 +75,7 @@ struct Closest {
 
 Closest run_closest(const FigureOptions& options) {
   const int across = options.quick ? 7 : 9, layers = options.quick ? 8 : 12;
-  const std::unique_ptr<Run<3>> run = make_run(closest_packing(across, layers));
+  const std::unique_ptr<Run<3>> run = make_scene_run(closest_packing(across, layers));
   const Columns<3> before = run->positions();
   Closest result;
   Eigen::AlignedBox3d box(Vec<3>::Zero(), Vec<3>::Constant(2 * kRadius * across));
@@ -110,6 +117,7 @@ double edges_per_site_on_two_lines(int n) {
   return static_cast<double>(edges) / n;
 }
 
+/// The densities of a packing, in a row of (c).
 struct AxisRow {
   std::string name;
   double piston, bulk;  // NaN: none
@@ -186,83 +194,106 @@ void add_key(DisplayList& list, const Vec<2>& low) {
   }
 }
 
-}  // namespace
+constexpr std::array<const char*, 5> kFiles{"packing_1484.toml", "packing_3498.toml",
+                                            "packing_6944.toml", "packing_207_227.toml",
+                                            "packing_1484_1747.toml"};
+constexpr std::array<std::size_t, 3> kShaken{0, 3, 4};  // of these, shaken as well
 
-FigureResult draw_figure9(const FigureOptions& options) {
-  const std::array<std::string, 5> files{"packing_1484.toml", "packing_3498.toml",
-                                         "packing_6944.toml", "packing_207_227.toml",
-                                         "packing_1484_1747.toml"};
+/// The packings of figures 6 and 7, those of kFiles and then those of kShaken. They have been run
+/// already when all figures are drawn.
+std::vector<Packing> random_packings(const FigureOptions& options) {
   std::vector<PackingJob> jobs;
-  for (const std::string& file : files) {
+  for (const char* file : kFiles) {
     const Scene<3> scene = packing_scene(options, file);
     std::string name = "$r$ = " + shortest(std::get<double>(scene.fills[0].radius));
     if (scene.fills.size() > 1) name += ", " + shortest(std::get<double>(scene.fills[1].radius));
     jobs.push_back({name, scene});
   }
-  // Figures 6 and 7 have run these already when all figures are drawn.
-  for (const std::size_t k : {0U, 3U, 4U}) {
+  for (const std::size_t k : kShaken) {
     const double seconds = options.quick ? 1 : k == 0 ? 4 : 2;
     jobs.push_back({"shaken", shaken(jobs[k].scene, seconds)});
   }
-  const std::vector<Packing> packings =
-      run_packings(jobs, options, options.out / "fig9_density.csv");
-  const Closest closest = run_closest(options);
+  return run_packings(jobs, options, options.out / "fig9_density.csv");
+}
 
+/// The rows of (c).
+std::vector<AxisRow> axis_rows(const std::vector<Packing>& packings, const Closest& closest) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   std::vector<AxisRow> rows;
-  for (std::size_t k = 0; k < files.size(); ++k) {
-    const Packing* shook = k == 0   ? &packings[5]
-                           : k == 3 ? &packings[6]
-                           : k == 4 ? &packings[7]
-                                    : nullptr;
-    rows.push_back({packings[k].name + " m", packings[k].final_density(), packings[k].bulk,
-                    shook ? shook->final_density() : kNone, shook ? shook->bulk : kNone});
+  for (std::size_t k = 0; k < kFiles.size(); ++k) {
+    rows.push_back(
+        {packings[k].name + " m", packings[k].final_density(), packings[k].bulk, kNone, kNone});
+  }
+  for (std::size_t s = 0; s < kShaken.size(); ++s) {
+    const Packing& shook = packings[kFiles.size() + s];
+    rows[kShaken[s]].shaken_piston = shook.final_density();
+    rows[kShaken[s]].shaken_bulk = shook.bulk;
   }
   rows.push_back({"closest packing, run", kNone, closest.packing.bulk, kNone, kNone});
+  return rows;
+}
 
-  Series scenes = series_style(0), lines = series_style(1);
-  scenes.name = "packings";
-  scenes.marker = Marker::disc;
-  scenes.width = 0;
-  lines.name = "two crossing lines";
-  lines.marker = Marker::square;
-  std::string table = "sites,edges_per_site[-],what\n";
+/// Edges of the triangulation per site, over the number of sites.
+struct EdgeCounts {
+  Series scenes, lines;  ///< of the packings; of two lines that cross
+  std::string table;     ///< the same as CSV
+};
+
+EdgeCounts count_edges(const std::vector<Packing>& packings, const Closest& closest, bool quick) {
+  EdgeCounts counts{series_style(0), series_style(1), "sites,edges_per_site[-],what\n"};
+  counts.scenes.name = "packings";
+  counts.scenes.marker = Marker::disc;
+  counts.scenes.width = 0;
+  counts.lines.name = "two crossing lines";
+  counts.lines.marker = Marker::square;
   const auto note = [&](Series& series, double n, double edges, const std::string& what) {
     series.x.push_back(n);
     series.y.push_back(edges);
-    table += shortest(n) + "," + shortest(edges) + ",\"" + what + "\"\n";
+    counts.table += shortest(n) + "," + shortest(edges) + ",\"" + what + "\"\n";
   };
-  for (const Packing& p : packings) {
-    note(scenes, static_cast<double>(p.radius.size()), p.edges_per_site, p.name);
+  const auto note_packing = [&](const Packing& p, const std::string& what) {
+    note(counts.scenes, static_cast<double>(p.radius.size()), p.edges_per_site, what);
+  };
+  for (const Packing& p : packings) note_packing(p, p.name);
+  note_packing(closest.packing, "closest packing");
+  for (int n = 50; n <= (quick ? 400 : 1600); n *= 2) {
+    note(counts.lines, n, edges_per_site_on_two_lines(n), "two crossing lines");
   }
-  note(scenes, static_cast<double>(closest.packing.radius.size()), closest.packing.edges_per_site,
-       "closest packing");
-  for (int n = 50; n <= (options.quick ? 400 : 1600); n *= 2) {
-    note(lines, n, edges_per_site_on_two_lines(n), "two crossing lines");
-  }
-  write_file(options.out / "fig9_edges.csv", table);
+  return counts;
+}
 
+DisplayList page(const Closest& closest, const EdgeCounts& counts, const std::vector<AxisRow>& rows,
+                 bool quick) {
   const double gap = 20, picture = 150, row_height = 176;
   DisplayList list{.width = style::kPage, .height = 350, .title = "lagrain, figure 9"};
-  const auto letter = [&](double x, double y, const char* text) {
-    list.add(Label{.text = text, .at = {x, y}, .size = style::kTitle, .along = Along::top});
-  };
-  letter(0, list.height - 2, "(a)");
+  add_title(list, {0, list.height - 2}, "(a)");
   add_packing(list, {16, list.height - 12 - picture}, picture, closest.packing, ColourBy::height,
-              options.quick, "face-centred cubic, at rest: " + rounded(closest.packing.bulk, 4));
+              quick, "face-centred cubic, at rest: " + rounded(closest.packing.bulk, 4));
   const double x = picture + 32 + gap;
-  letter(x, list.height - 2, "(b)");
+  add_title(list, {x, list.height - 2}, "(b)");
   add_plot(list, {{x + 14, list.height - 12 - picture - 10}, {style::kPage, list.height - 8}},
            {.x = {.label = "sites", .log = true},
             .y = {.label = "edges per site", .log = true},
-            .series = {scenes, lines},
+            .series = {counts.scenes, counts.lines},
             .legend = Corner::top_left});
-  letter(0, row_height - 4, "(c)");
+  add_title(list, {0, row_height - 4}, "(c)");
   add_density_axis(list, {{16, 14}, {style::kPage - 6, row_height - 6}}, rows);
   add_key(list, {110, 5});
+  return list;
+}
+
+}  // namespace
+
+FigureResult draw_figure9(const FigureOptions& options) {
+  const std::vector<Packing> packings = random_packings(options);
+  const Closest closest = run_closest(options);
+  const EdgeCounts counts = count_edges(packings, closest, options.quick);
+  const DisplayList list = page(closest, counts, axis_rows(packings, closest), options.quick);
+  write_file(options.out / "fig9_edges.csv", counts.table);
   paint_png(list, options.out / "fig9.png", 300);
   paint_pdf(list, options.out / "fig9.pdf");
 
+  const auto [least, most] = std::minmax_element(counts.scenes.y.begin(), counts.scenes.y.end());
   FigureResult result;
   result.caption =
       "(a) The closest packing of equal spheres, " + std::to_string(closest.packing.radius.size()) +
@@ -275,10 +306,9 @@ FigureResult draw_figure9(const FigureOptions& options) {
        rounded(closest.packing.bulk, 5) + " within, run through the engine (" +
            rounded(closest.start, 5) + " before it carried itself)"},
       {"edges per site (third claim: linear in practice, quadratic at worst)", "O(n), O(n^2)",
-       rounded(*std::min_element(scenes.y.begin(), scenes.y.end()), 3) + " to " +
-           rounded(*std::max_element(scenes.y.begin(), scenes.y.end()), 3) +
-           " in all packings; n/4 + 1 on two crossing lines (" + rounded(lines.y.back(), 4) +
-           " for " + rounded(lines.x.back(), 5) + ")"}};
+       rounded(*least, 3) + " to " + rounded(*most, 3) +
+           " in all packings; n/4 + 1 on two crossing lines (" + rounded(counts.lines.y.back(), 4) +
+           " for " + rounded(counts.lines.x.back(), 5) + ")"}};
   result.facts = packing_facts(packings);
   result.facts.push_back({"closest packing: largest move of a grain",
                           rounded(100 * closest.largest_move, 2) + " % of its radius"});

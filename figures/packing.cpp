@@ -283,6 +283,18 @@ std::string digits(double density) {
   return rounded(density, 3);
 }
 
+std::string difference_text(double density, double paper) {
+  return (density < paper ? "" : "+") + rounded(density - paper, 2);
+}
+
+std::string quick_text(bool quick) {
+  return quick ? " (quick: an eighth as many, twice as large)" : "";
+}
+
+void add_title(DisplayList& list, const Vec<2>& at, const std::string& text) {
+  list.add(Label{.text = text, .at = at, .size = style::kTitle, .along = Along::top});
+}
+
 std::string bulk_text(const Packing& packing) {
   if (packing.bulk_count == 0) return "no cell away from the walls";
   return digits(packing.bulk) + " in the " + std::to_string(packing.bulk_count) +

@@ -61,10 +61,12 @@ struct Packing {
 /// The scene of a file; with `quick` an eighth as many grains of twice the radius.
 Scene<3> packing_scene(const FigureOptions& options, const std::string& file);
 
-/// The same, its box shaken from kShakeStart on for a whole number of periods, then left alone.
+/// A scene whose box is shaken from kShakeStart on for a whole number of periods, then left alone.
+/// @param seconds  of shaking, about
 Scene<3> shaken(Scene<3> scene, double seconds);
 
-/// The same with another friction between all; 0 leaves spin and memory out altogether.
+/// A scene with another friction between all grains and walls. Without friction (0) spin and memory
+/// are left out altogether.
 Scene<3> with_friction(Scene<3> scene, double friction);
 
 /// Runs the jobs, as many at once as there are cores; a job that was run before in this process is
@@ -82,11 +84,17 @@ std::pair<double, int> bulk_density(const Columns<3>& position, const Eigen::Vec
 /// Positions and radii of a packing at its end as CSV.
 std::string packing_csv(const Packing& packing);
 
-/// A density as it is printed.
+/// A density as the figures print it, with three significant digits.
 std::string digits(double density);
+
+/// How far a density lies from the paper's, with its sign: "+0.012".
+std::string difference_text(double density, double paper);
 
 /// The density away from the walls and of how many cells it is, in words.
 std::string bulk_text(const Packing& packing);
+
+/// Says of a row of the paper how a quick figure differs from it.
+std::string quick_text(bool quick);
 
 /// Density against time.
 Series density_series(const Packing& packing, int index, double from);
@@ -100,6 +108,9 @@ enum class ColourBy { height, radius };
 /// @param width of the picture, which is a square [pt]
 void add_packing(DisplayList& list, const Vec<2>& low, double width, const Packing& packing,
                  ColourBy by, bool quick, const std::string& text);
+
+/// Adds a title whose top is at the given place [pt].
+void add_title(DisplayList& list, const Vec<2>& at, const std::string& text);
 
 /// Facts for the gallery: what the runs of a figure cost and what was checked.
 std::vector<Fact> packing_facts(const std::vector<Packing>& packings);
