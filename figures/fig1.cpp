@@ -8,6 +8,7 @@
 #include "geometry_figures.hpp"
 
 #include <lagrain/plot.hpp>
+#include <lagrain/run.hpp>
 
 #include <algorithm>
 
@@ -92,7 +93,7 @@ FigureResult draw_figure1(const FigureOptions& options) {
       " discs at rest in an open box and the edges of their regular triangulation, weight r^2. "
       "Thick: the edges that carry a contact; there is no contact without an edge. The discs fell "
       "under gravity, with friction, for " +
-      number(scene.time) + " s.";
+      rounded(scene.time, 4) + " s.";
   result.comparisons = {
       {"discs", "24", std::to_string(n)},
       {"edges", "not given; linear in n: 3 n - 3 - hull",
@@ -103,18 +104,18 @@ FigureResult draw_figure1(const FigureOptions& options) {
       {"edges of T", std::to_string(figure.contacts.edges.size())},
       {"edges on the convex hull", std::to_string(figure.hull)},
       {"contacts between discs", std::to_string(figure.contacts.found.size())},
-      {"edges per contact", number(per_contact, 3)},
-      {"radii", number(1e3 * scene.discs.radius.minCoeff(), 3) + " to " +
-                    number(1e3 * scene.discs.radius.maxCoeff(), 3) + " mm"},
+      {"edges per contact", rounded(per_contact, 3)},
+      {"radii", rounded(1e3 * scene.discs.radius.minCoeff(), 3) + " to " +
+                    rounded(1e3 * scene.discs.radius.maxCoeff(), 3) + " mm"},
       {"seed", std::to_string(scene.seed)},
-      {"steps", std::to_string(scene.steps) + " of " + number(1e6 * scene.time_step, 3) + " us"},
-      {"stiffness, friction, restitution", number(scene.stiffness) + " N/m, " +
-                                               number(scene.friction) + ", " +
-                                               number(scene.restitution)},
-      {"overlap, mean and largest", number(100 * scene.mean_overlap, 2) + " % and " +
-                                        number(100 * scene.largest_overlap, 2) +
+      {"steps", std::to_string(scene.steps) + " of " + rounded(1e6 * scene.time_step, 3) + " us"},
+      {"stiffness, friction, restitution", rounded(scene.stiffness, 4) + " N/m, " +
+                                               rounded(scene.friction, 4) + ", " +
+                                               rounded(scene.restitution, 4)},
+      {"overlap, mean and largest", rounded(100 * scene.mean_overlap, 2) + " % and " +
+                                        rounded(100 * scene.largest_overlap, 2) +
                                         " % of the smaller radius"},
-      {"kinetic energy at the end", number(scene.kinetic_energy, 2) + " J"},
+      {"kinetic energy at the end", rounded(scene.kinetic_energy, 2) + " J"},
       {"contacts audited, missed",
        std::to_string(scene.audited) + ", " + std::to_string(scene.missed)}};
   result.pictures = {"fig1.png"};

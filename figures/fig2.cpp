@@ -10,6 +10,7 @@
 #include "geometry_figures.hpp"
 
 #include <lagrain/plot.hpp>
+#include <lagrain/run.hpp>
 #include <lagrain/text.hpp>
 
 #include <algorithm>
@@ -85,15 +86,7 @@ void add_misprint(DisplayList& list, const Found& found, const Box& area, const 
   add_cells_and_discs(list, view, found.triangulation);
   add_triangulation(list, view, found);
 
-  const std::array<Vec<2>, 4> kBeside{Vec<2>(-8, 0), Vec<2>(8, 0), Vec<2>(0, 10), Vec<2>(0, -10)};
-  for (int i = 0; i < 4; ++i) {
-    list.add(Label{.text = std::to_string(i),
-                   .at = view.centre(i) + kBeside[static_cast<std::size_t>(i)],
-                   .size = style::kSmallText,
-                   .colour = style::kInk,
-                   .across = Across::centre,
-                   .along = Along::middle});
-  }
+  add_numbers(list, view, {Vec<2>(-8, 0), Vec<2>(8, 0), Vec<2>(0, 10), Vec<2>(0, -10)});
   add_heading(list, panel.box(), text);
 
   const double bottom = panel.box().centre()[1] - 0.5 * kZoom;
@@ -183,16 +176,15 @@ FigureResult draw_figure2(const FigureOptions& options) {
       "(a) Discs, their Laguerre cells and the edges of the regular triangulation, which joins "
       "discs whose cells share a border. The power of x to S1 is the square of the tangent's "
       "length. The weight of a disc is the square of its radius. (b) Discs 0 and 1 (r = 10) "
-      "overlap by 0.02; "
-      "discs 2 and 3 have r = 1. With weight r^2 the edge 0-1 is there, and the contact is found. "
-      "(c) The same discs with weight r^(1/2), as Theorem 2.1 of the paper has it by a slip: the "
-      "edge is 2-3, and the contact is missed. Squares: the middle, 0.1 wide.";
+      "overlap by 0.02; discs 2 and 3 have r = 1. With weight r^2 the edge 0-1 is there, and the "
+      "contact is found. (c) The same discs with weight r^(1/2), as Theorem 2.1 of the paper has "
+      "it by a slip: the edge is 2-3, and the contact is missed. Squares: the middle, 0.1 wide.";
   result.comparisons = {
       {"weight in Theorem 2.1", "square root of r (its proof: r^2)", "r^2"},
       {"inner edge with weight r^2", "not given", edge(figure.squares)},
       {"inner edge with weight sqrt(r)", "not given", edge(figure.roots)},
-      {"P1(x) against squared tangent", "equal", number(power, 6) + ", " + number(tangent, 6)}};
-  result.facts = {{"overlap of discs 0 and 1", number(figure.squares.discs.overlap({0, 1}), 3)}};
+      {"P1(x) against squared tangent", "equal", rounded(power, 6) + ", " + rounded(tangent, 6)}};
+  result.facts = {{"overlap of discs 0 and 1", rounded(figure.squares.discs.overlap({0, 1}), 3)}};
   result.pictures = {"fig2.png"};
   result.downloads = {"fig2.pdf", "fig2_discs.csv", "fig2_edges.csv"};
   return result;

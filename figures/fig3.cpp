@@ -10,6 +10,7 @@
 
 #include <lagrain/plot.hpp>
 #include <lagrain/random.hpp>
+#include <lagrain/run.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -43,15 +44,7 @@ void add_square(DisplayList& list, const Found& found, const Vec<2>& low, const 
   const View view{panel, found.discs};
   add_cells_and_discs(list, view, found.triangulation);
   add_triangulation(list, view, found);
-  const std::array<Vec<2>, 4> kBeside{Vec<2>(-8, 0), Vec<2>(8, 0), Vec<2>(0, 8), Vec<2>(0, -8)};
-  for (int i = 0; i < 4; ++i) {
-    list.add(Label{.text = std::to_string(i),
-                   .at = view.centre(i) + kBeside[static_cast<std::size_t>(i)],
-                   .size = style::kSmallText,
-                   .colour = style::kInk,
-                   .across = Across::centre,
-                   .along = Along::middle});
-  }
+  add_numbers(list, view, {Vec<2>(-8, 0), Vec<2>(8, 0), Vec<2>(0, 8), Vec<2>(0, -8)});
   add_heading(list, panel.box(), text);
 
   const Vec<2> corner(low[0] + kSquare + 16, low[1] + 0.5 * (kSquare - kWindow));
@@ -138,7 +131,7 @@ DisplayList picture_of(const Figure3& figure) {
   add_triangulation(list, view, figure.overlapping);
   add_heading(
       list, panel.box(),
-      "(a) overlaps up to " + number(deepest(figure.overlapping), 2) + " of the smaller radius");
+      "(a) overlaps up to " + rounded(deepest(figure.overlapping), 2) + " of the smaller radius");
 
   const double x = kMargin + left + kBetween;
   add_square(list, figure.below, {x, top - kSquare}, "(b) just below 0.5858: found");
@@ -178,17 +171,16 @@ FigureResult draw_figure3(const FigureOptions& options) {
   FigureResult result;
   result.caption =
       "(a) Overlapping discs, cells and regular triangulation, weight r^2: every contact is an "
-      "edge. "
-      "(b, c) Four equal discs, r = 1, in a square: the detection is proved up to overlaps of "
-      "2 - sqrt 2 = 0.5858 of the smaller radius. (b) Sides overlap by " +
+      "edge. (b, c) Four equal discs, r = 1, in a square: the detection is proved up to overlaps "
+      "of 2 - sqrt 2 = 0.5858 of the smaller radius. (b) Sides overlap by " +
       fixed(overlap_share(figure.below.discs, {0, 2}), 5) + ": contact 0-1 is found. (c) By " +
       fixed(overlap_share(figure.above.discs, {0, 2}), 5) +
       ": 0-1 and 2-3 both touch, but only one of them can be an edge, and 0-1 is missed. Squares: "
       "the middle, " +
-      number(kZoomed) + " wide.";
+      rounded(kZoomed, 4) + " wide.";
   result.comparisons = {
       {"overlaps in practice", "about 1 % of the grains' size",
-       "drawn here: up to " + number(100 * deepest(figure.overlapping), 2) +
+       "drawn here: up to " + rounded(100 * deepest(figure.overlapping), 2) +
            " % of the smaller radius"},
       {"contacts missed in (a)", "none", std::to_string(figure.overlapping.missed.size())},
       {"side overlap where it stops", "not given (slightly overlap)", "0.58579 (2 - sqrt 2)"}};

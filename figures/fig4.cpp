@@ -12,6 +12,7 @@
 
 #include <lagrain/check.hpp>
 #include <lagrain/plot.hpp>
+#include <lagrain/run.hpp>
 #include <lagrain/text.hpp>
 #include <lagrain/video.hpp>
 
@@ -301,11 +302,9 @@ DisplayList picture_of(const FilmFrame& frame, double side) {
   return list;
 }
 
-FigureResult draw_figure4(const FigureOptions& options) {
-  options.progress(0, "searching a move that exchanges one edge");
-  const Figure4 figure = make_figure4();
-  write_picture(picture_of(figure), options.out, "fig4");
+namespace {
 
+void write_tables(const Figure4& figure, const std::filesystem::path& folder) {
   std::vector<std::vector<double>> discs, edges;
   for (int i = 0; i < figure.before.size(); ++i) {
     discs.push_back({static_cast<double>(i), figure.before.radius[i], figure.before.at(i)[0],
@@ -320,64 +319,98 @@ FigureResult draw_figure4(const FigureOptions& options) {
                      holds(figure.after.edges, edge) ? 1.0 : 0.0,
                      figure.after.discs.overlap(edge)});
   }
-  write_csv(options.out / "fig4_discs.csv",
-            "disc[-],r[m],x_before[m],y_before[m],x_after[m],y_after[m]", discs);
-  write_csv(options.out / "fig4_edges.csv", "i[-],j[-],before[-],after[-],overlap_after[m]", edges);
+  write_csv(folder / "fig4_discs.csv", "disc[-],r[m],x_before[m],y_before[m],x_after[m],y_after[m]",
+            discs);
+  write_csv(folder / "fig4_edges.csv", "i[-],j[-],before[-],after[-],overlap_after[m]", edges);
+}
 
-  // The video: the same discs from time 0 on, a quarter of their speed at 30 frames a second.
-  constexpr int kEvery = 16, kFramesPerSecond = 30;
-  const Flight flight = fly(kCount, figure.seed, options.quick ? 0.5 : 2.0, kLeastInterval);
-  const std::vector<FilmFrame> frames = film(flight, kEvery);
-  VideoWriter video(options.out / "fig4.mp4", kFramesPerSecond);
+/// Writes what the video counts, frame by frame.
+void write_film_table(const std::vector<FilmFrame>& frames, const std::filesystem::path& folder) {
   std::vector<std::vector<double>> counts;
-  for (std::size_t k = 0; k < frames.size(); ++k) {
-    options.check_stop();
-    options.progress(static_cast<double>(k) / static_cast<double>(frames.size()), "video");
-    const FilmFrame& frame = frames[k];
-    video.add(paint_rgba(picture_of(frame, flight.side), 144, Quality::frame));
+  for (const FilmFrame& frame : frames) {
     counts.push_back({frame.time, static_cast<double>(frame.flips),
                       static_cast<double>(frame.contacts), static_cast<double>(frame.missed),
                       static_cast<double>(frame.missed_by_first)});
   }
-  const VideoReport report = video.finish();
-  write_csv(options.out / "fig4_film.csv",
-            "time[s],flips[-],collisions[-],missed[-],missed_by_first[-]", counts);
+  write_csv(folder / "fig4_film.csv", "time[s],flips[-],collisions[-],missed[-],missed_by_first[-]",
+            counts);
+}
 
-  const FilmFrame& last = frames.back();
+/// Plays the flight at a quarter of its speed.
+/// @throws Interrupted
+VideoReport write_film(const std::vector<FilmFrame>& frames, double side,
+                       const FigureOptions& options) {
+  constexpr int kFramesPerSecond = 30;
+  VideoWriter video(options.out / "fig4.mp4", kFramesPerSecond);
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    options.check_stop();
+    options.progress(static_cast<double>(k) / static_cast<double>(frames.size()), "video");
+    video.add(paint_rgba(picture_of(frames[k], side), 144, Quality::frame));
+  }
+  return video.finish();
+}
+
+/// @param last  frame of the video
+std::string caption_of(const FilmFrame& last) {
+  return std::to_string(kCount) +
+         " discs that fly and collide elastically in a box. (a) The discs and their regular "
+         "triangulation T; arrows: the move that follows. (b) After the move, the edges of (a): "
+         "one contact lies on no edge (ring) and would be missed. (c) T moved with the discs: one "
+         "edge has disappeared, the one that appeared carries the contact. Chosen by search: the "
+         "first seed, and in it the longest move of at least half the mean radius, that exchanges "
+         "exactly one edge for one that crosses it clearly and carries a contact, while another "
+         "contact stays found. Video: T maintained, " +
+         std::to_string(last.flips) + " flips in " + rounded(last.time, 3) + " s; " +
+         std::to_string(last.contacts) + " collisions, of which T misses " +
+         std::to_string(last.missed) + " and T of time 0 would miss " +
+         std::to_string(last.missed_by_first) + ".";
+}
+
+std::vector<Comparison> comparisons_of(const Figure4& figure) {
   const auto name = [](Pair pair) { return std::to_string(pair.i) + "-" + std::to_string(pair.j); };
-  FigureResult result;
-  result.caption =
-      std::to_string(kCount) +
-      " discs that fly and collide elastically in a box. (a) The discs and their regular "
-      "triangulation T; arrows: the move that follows. (b) After the move, the edges of (a): one "
-      "contact lies on no edge (ring) and would be missed. (c) T moved with the discs: one edge "
-      "has disappeared, the one that appeared carries the contact. Chosen by search: the first "
-      "seed, and in it the longest move of at least half the mean radius, that exchanges exactly "
-      "one edge for one that crosses it clearly and carries a contact, while another contact stays "
-      "found. Video: T maintained, " +
-      std::to_string(last.flips) + " flips in " + number(last.time, 3) + " s; " +
-      std::to_string(last.contacts) + " collisions, of which T misses " +
-      std::to_string(last.missed) + " and T of time 0 would miss " +
-      std::to_string(last.missed_by_first) + ".";
-  result.comparisons = {
+  return {
       {"edges that appear, disappear", "one, another one",
        name(figure.fresh) + ", " + name(figure.gone)},
       {"contacts missed by the old T", "may fail to detect contacts",
        std::to_string(without(figure.after.found, figure.stale).size()) + " of " +
            std::to_string(figure.after.found.size())},
       {"contacts missed by the maintained T", "none", std::to_string(figure.after.missed.size())}};
-  result.facts = {
-      {"seed", std::to_string(figure.seed)},
-      {"move", "from " + fixed(1e3 * figure.before_time, 0) + " to " +
-                   fixed(1e3 * figure.after_time, 0) + " ms; mean " + number(figure.mean_move, 2) +
-                   " of the mean radius"},
-      {"that move", std::to_string(figure.update.flips) + " flips, " +
-                        std::to_string(figure.update.extracted + figure.update.unstuck) +
-                        " sites taken out and put back"},
-      {"largest overlap in the video",
-       number(100 * flight.largest_overlap, 2) + " % of the smaller radius"},
-      {"energy drift in the video", number(100 * flight.energy_drift, 2) + " %"}};
-  result.pictures = {"fig4.png", report.path};
+}
+
+/// @param flight  of the video
+std::vector<Fact> facts_of(const Figure4& figure, const Flight& flight) {
+  return {{"seed", std::to_string(figure.seed)},
+          {"move", "from " + fixed(1e3 * figure.before_time, 0) + " to " +
+                       fixed(1e3 * figure.after_time, 0) + " ms; mean " +
+                       rounded(figure.mean_move, 2) + " of the mean radius"},
+          {"that move", std::to_string(figure.update.flips) + " flips, " +
+                            std::to_string(figure.update.extracted + figure.update.unstuck) +
+                            " sites taken out and put back"},
+          {"largest overlap in the video",
+           rounded(100 * flight.largest_overlap, 2) + " % of the smaller radius"},
+          {"energy drift in the video", rounded(100 * flight.energy_drift, 2) + " %"}};
+}
+
+}  // namespace
+
+FigureResult draw_figure4(const FigureOptions& options) {
+  options.progress(0, "searching a move that exchanges one edge");
+  const Figure4 figure = make_figure4();
+  write_picture(picture_of(figure), options.out, "fig4");
+  write_tables(figure, options.out);
+
+  // The video shows the same discs from time 0 on.
+  constexpr int kEvery = 16;  // snapshots to a frame
+  const Flight flight = fly(kCount, figure.seed, options.quick ? 0.5 : 2.0, kLeastInterval);
+  const std::vector<FilmFrame> frames = film(flight, kEvery);
+  const VideoReport video = write_film(frames, flight.side, options);
+  write_film_table(frames, options.out);
+
+  FigureResult result;
+  result.caption = caption_of(frames.back());
+  result.comparisons = comparisons_of(figure);
+  result.facts = facts_of(figure, flight);
+  result.pictures = {"fig4.png", video.path};
   result.downloads = {"fig4.pdf", "fig4_discs.csv", "fig4_edges.csv", "fig4_film.csv"};
   return result;
 }

@@ -4,6 +4,8 @@
 // the same.
 
 #include "figure.hpp"
+#include "geometry_drawing.hpp"
+#include "scene_run.hpp"
 
 #include <lagrain/output.hpp>
 #include <lagrain/paint.hpp>
@@ -14,6 +16,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -40,98 +43,123 @@ Scene3 seen_from_below(const Run<3>& run, const Columns<3>& x, int subframes) {
   const double width = 2 * run.scene().grains[0].position.x();  // the large one is in the middle
   const Box3 box{Vec<3>::Zero(), {width, width, 0.6 * width}};
   add_edges(scene, box);
-  scene.camera =
-      camera_framing({box.low, {width, width, 0.01 * width}}, {0, 0, 1}, {0, 1, 0}, 1, 0.35, 0.03);
+  scene.camera = look({box.low, {width, width, 0.01 * width}}, {0, 0, 1}, {0, 1, 0}, 1, 0.35, 0.03);
   scene.lights = over_the_shoulder(scene.camera);
   scene.subframes = subframes;
   return scene;
 }
 
 std::string label(double time) {
-  std::string text = std::to_string(std::lround(100 * time));
-  text.insert(text.size() - 2, ".");
-  return "$t$ = " + text + " s";
+  return "$t$ = " + fixed(time, 2) + " s";
 }
 
-}  // namespace
+/// Grains placed by hand come first, and the large one is the only one.
+constexpr int kLarge = 0;
 
-FigureResult draw_figure8(const FigureOptions& options) {
-  const std::filesystem::path file = options.scenes / "around_a_large_grain.toml";
-  const std::unique_ptr<Run<3>> run = make_run(read_scene<3>(file));
-  const int large = 0;  // grains placed by hand come first
+/// The run, and what was kept on its way.
+struct Figure8 {
+  std::filesystem::path file;
+  std::unique_ptr<Run<3>> run;
+  std::vector<Columns<3>> kept;  ///< places at kTimes [m]
+  VideoReport film;
+
+  /// How high the large grain is above the floor, at the end [m].
+  double bottom() const { return run->positions()(2, kLarge) - run->radii()[kLarge]; }
+};
+
+Image film_frame(const Run<3>& run, bool quick) {
+  DisplayList page{.width = 400, .height = 424};
+  page.add(paint_scene3(
+      seen_from_below(run, run.positions(), quick ? kPreviewSubframes : kVideoSubframes),
+      Box{{0, 0}, {400, 400}}, kFilmDpi));
+  page.add(Label{.text = label(run.time()), .at = {14, 406}, .size = 14});
+  return paint_rgba(page, kFilmDpi, Quality::frame);
+}
+
+/// Runs the scene; writes the video and the height of the large grain.
+Figure8 make_figure8(const FigureOptions& options) {
+  Figure8 figure;
+  figure.file = options.scenes / "around_a_large_grain.toml";
+  figure.run = make_scene_run(read_scene<3>(figure.file));
+  const Run<3>& run = *figure.run;
   VideoWriter video(options.out / "fig8.mp4", 25);
-  std::vector<Columns<3>> kept;
   std::string track = "time[s],large_grain_bottom[m]\n";
   double next_frame = kFilmStart;
-  while (!run->finished()) {
-    run->step();
+  while (!run.finished()) {
+    figure.run->step();
     if (options.stop()) {
       write_file(options.out / "fig8_large_grain.csv", track);
       throw Interrupted();
     }
-    if (run->steps() % 100 == 0) {
-      options.progress(run->time() / run->scene().duration, "around a large grain");
-      track += shortest(run->time()) + "," +
-               shortest(run->positions()(2, large) - run->radii()[large]) + "\n";
+    if (run.steps() % 100 == 0) {
+      options.progress(run.time() / run.scene().duration, "around a large grain");
+      track += shortest(run.time()) + "," + shortest(figure.bottom()) + "\n";
     }
-    if (kept.size() < kTimes.size() && run->time() >= kTimes[kept.size()]) {
-      kept.push_back(run->positions());
+    if (figure.kept.size() < kTimes.size() && run.time() >= kTimes[figure.kept.size()]) {
+      figure.kept.push_back(run.positions());
     }
-    if (run->time() >= next_frame && run->time() <= kFilmEnd) {
+    if (run.time() >= next_frame && run.time() <= kFilmEnd) {
       next_frame += options.quick ? 4 * kFilmEvery : kFilmEvery;
-      DisplayList page{.width = 400, .height = 424};
-      page.add(paint_scene3(seen_from_below(*run, run->positions(),
-                                            options.quick ? kPreviewSubframes : kVideoSubframes),
-                            Box{{0, 0}, {400, 400}}, kFilmDpi));
-      page.add(Label{.text = label(run->time()), .at = {14, 406}, .size = 14});
-      video.add(paint_rgba(page, kFilmDpi, Quality::frame));
+      video.add(film_frame(run, options.quick));
     }
   }
-  const VideoReport film = video.finish();
+  figure.film = video.finish();
   write_file(options.out / "fig8_large_grain.csv", track);
-  write_file(options.out / "fig8_final.csv", frame_csv(*run));
+  return figure;
+}
 
+DisplayList picture_of(const Figure8& figure, bool quick) {
   const double gap = 8, third = (style::kPage - 2 * gap) / 3;
   DisplayList list{.width = style::kPage, .height = 2 * (third + 16), .title = "lagrain, figure 8"};
-  for (std::size_t k = 0; k < kept.size(); ++k) {
+  for (std::size_t k = 0; k < figure.kept.size(); ++k) {
     const double x = static_cast<double>(k % 3) * (third + gap);
     const double y = list.height - static_cast<double>(k / 3 + 1) * (third + 16);
     list.add(paint_scene3(
-        seen_from_below(*run, kept[k], options.quick ? kPreviewSubframes : kPrintSubframes),
+        seen_from_below(*figure.run, figure.kept[k], quick ? kPreviewSubframes : kPrintSubframes),
         Box{{x, y}, {x + third, y + third}}));
     list.add(Label{.text = label(kTimes[k]),
                    .at = {x + third / 2, y + third + 4},
                    .size = style::kText,
                    .across = Across::centre});
   }
-  paint_png(list, options.out / "fig8.png", 300);
-  paint_pdf(list, options.out / "fig8.pdf");
+  return list;
+}
 
-  // How far the others made room: grains that touch the floor under the large one.
-  const auto under = [&](const Columns<3>& x) {
-    int count = 0;
-    for (int i = 1; i < run->count(); ++i) {
-      const Vec<2> from_middle = (x.col(i) - x.col(large)).head<2>();
-      count += x(2, i) < 1.5 * run->radii()[i] && from_middle.norm() < run->radii()[large] / 2;
-    }
-    return count;
-  };
+/// How many of the others touch the floor under the middle of the large grain.
+int under_large(const Run<3>& run, const Columns<3>& x) {
+  int count = 0;
+  for (int i = 1; i < run.count(); ++i) {
+    const Vec<2> from_middle = (x.col(i) - x.col(kLarge)).head<2>();
+    count += x(2, i) < 1.5 * run.radii()[i] && from_middle.norm() < run.radii()[kLarge] / 2;
+  }
+  return count;
+}
+
+}  // namespace
+
+FigureResult draw_figure8(const FigureOptions& options) {
+  const Figure8 figure = make_figure8(options);
+  const Run<3>& run = *figure.run;
+  write_file(options.out / "fig8_final.csv", frame_csv(run));
+  const DisplayList picture = picture_of(figure, options.quick);
+  paint_png(picture, options.out / "fig8.png", 300);
+  paint_pdf(picture, options.out / "fig8.pdf");
+
   FigureResult result;
   result.caption =
-      "One large, 6 medium and 173 small grains (radii 5 : 2 : 1) from below, through the floor: "
-      "a piston presses the large grain down, and the others leave space for it.";
+      "One large, 6 medium and 173 small grains (radii 5 : 2 : 1) from below, through the floor: a "
+      "piston presses the large grain down, and the others leave space for it.";
   result.comparisons = {
       {"grains", "one large among medium and small ones",
-       std::to_string(run->count()) + ": 1, 6 and 173"},
+       std::to_string(run.count()) + ": 1, 6 and 173"},
       {"on the floor under the middle of the large grain", "they leave space for it",
-       std::to_string(under(kept.front())) + " at 1.00 s, " + std::to_string(under(kept.back())) +
-           " at 1.25 s"}};
-  for (auto& [name, value] : facts(*run)) result.facts.push_back({name, value});
-  result.facts.push_back(
-      {"height of the large grain above the floor, at the end",
-       rounded(1000 * (run->positions()(2, large) - run->radii()[large]), 2) + " mm"});
-  result.pictures = {"fig8.png", "fig8.pdf", film.path};
-  result.downloads = {"fig8_large_grain.csv", "fig8_final.csv", file};
+       std::to_string(under_large(run, figure.kept.front())) + " at 1.00 s, " +
+           std::to_string(under_large(run, figure.kept.back())) + " at 1.25 s"}};
+  for (auto& [name, value] : facts(run)) result.facts.push_back({name, value});
+  result.facts.push_back({"height of the large grain above the floor, at the end",
+                          rounded(1000 * figure.bottom(), 2) + " mm"});
+  result.pictures = {"fig8.png", "fig8.pdf", figure.film.path};
+  result.downloads = {"fig8_large_grain.csv", "fig8_final.csv", figure.file};
   return result;
 }
 

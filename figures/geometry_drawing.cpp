@@ -132,6 +132,17 @@ void add_cells_and_discs(DisplayList& list, const View& view,
   add_frame(list, view.panel.box(), style::kCellLine);
 }
 
+void add_numbers(DisplayList& list, const View& view, const std::vector<Vec<2>>& offsets) {
+  for (std::size_t i = 0; i < offsets.size(); ++i) {
+    list.add(Label{.text = std::to_string(i),
+                   .at = view.centre(static_cast<int>(i)) + offsets[i],
+                   .size = style::kSmallText,
+                   .colour = style::kInk,
+                   .across = Across::centre,
+                   .along = Along::middle});
+  }
+}
+
 void add_ring(DisplayList& list, const View& view, Pair contact, double radius) {
   const Vec<2> a = view.centre(contact.i), b = view.centre(contact.j);
   const Vec<2> touch = a + (b - a).normalized() * view.radius(contact.i);
@@ -252,13 +263,6 @@ void add_arrow(DisplayList& list, const Vec<2>& from, const Vec<2>& to, const St
   list.add(Segment{from, to, stroke});
   list.add(Segment{to, to - head * (along + 0.5 * across), stroke});
   list.add(Segment{to, to - head * (along - 0.5 * across), stroke});
-}
-
-std::string number(double value, int digits) {
-  char buffer[32];
-  const auto end =
-      std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits).ptr;
-  return {buffer, end};
 }
 
 std::string fixed(double value, int decimals) {

@@ -47,6 +47,8 @@ void add_triangulation(DisplayList& list, const View& view, const Found& found);
 /// Cells cut to the view's box, their borders over translucent discs, and a frame.
 void add_cells_and_discs(DisplayList& list, const View& view,
                          const Triangulation<2>& triangulation);
+/// The numbers of the first discs, each at an offset from the disc's centre [pt].
+void add_numbers(DisplayList& list, const View& view, const std::vector<Vec<2>>& offsets);
 /// A ring around the point where two discs touch.
 void add_ring(DisplayList& list, const View& view, Pair contact, double radius = 5);
 
@@ -81,10 +83,7 @@ void add_detection_legend(DisplayList& list, const Vec<2>& left);
 /// Arrow with an open head.
 void add_arrow(DisplayList& list, const Vec<2>& from, const Vec<2>& to, const Stroke& stroke);
 
-/// A number for a text, in markup, with `digits` significant digits.
-std::string number(double value, int digits = 4);
-
-/// With a fixed number of decimals.
+/// A number with a fixed number of decimals; with significant digits see rounded.
 std::string fixed(double value, int decimals);
 
 /// Writes NAME.png (300 dpi) and NAME.pdf into the folder.
