@@ -20,6 +20,14 @@ Series curve(int index, const std::string& name) {
   return series;
 }
 
+Diagram error_diagram(const std::string& title, const std::string& error, Corner legend) {
+  return {title,
+          {.x = {.label = "processor s per simulated s", .log = true},
+           .y = {.label = "error: " + error, .log = true},
+           .series = {},
+           .legend = legend}};
+}
+
 void leave_room_for_legend(Plot& plot) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Series& series : plot.series) {

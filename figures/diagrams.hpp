@@ -20,6 +20,10 @@ struct Diagram {
 /// Colour, dashes and marker of the index-th curve of a diagram.
 Series curve(int index, const std::string& name);
 
+/// An empty diagram of an error against the processor time that it costs, both logarithmic.
+/// @param error  its name, and what it is a part of
+Diagram error_diagram(const std::string& title, const std::string& error, Corner legend);
+
 /// Widens the range of y, so that the legend in an upper corner covers no curve and a range exists
 /// even where all points agree.
 void leave_room_for_legend(Plot& plot);

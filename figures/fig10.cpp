@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -302,11 +304,7 @@ std::vector<int> parts(bool quick) {
 
 /// A panel of the inclines: bodies and slopes instead of integrators.
 Diagram incline_panel(const FigureOptions& options, bench::Csv& csv) {
-  Diagram diagram{"(i) on an incline, Verlet",
-                  {.x = {.label = "processor s per simulated s", .log = true},
-                   .y = {.label = "error: velocity, spin", .log = true},
-                   .series = {},
-                   .legend = Corner::top_right}};
+  Diagram diagram = error_diagram("(i) on an incline, Verlet", "velocity, spin", Corner::top_right);
   struct Slope {
     std::string name;
     Outcome (*run)(const Choice&, double, const FigureOptions&);
@@ -381,6 +379,70 @@ Pressure gas_pressure(const FigureOptions& options) {
   return p;
 }
 
+/// One curve: an integrator on an experiment over the steps of the sweep, and the order observed.
+struct Sweep {
+  Series series;
+  double order = 0;  ///< NaN where rounding hides it
+};
+
+/// @param tell  told the share of the sweep that is done
+Sweep sweep(const Experiment& experiment, std::size_t integrator, const std::vector<int>& steps,
+            const std::function<void(double)>& tell, bench::Csv& csv) {
+  Sweep result{curve(static_cast<int>(integrator), std::string(name_of(kIntegrators[integrator])))};
+  std::vector<double> taken, errors;
+  for (std::size_t s = 0; s < steps.size(); ++s) {
+    tell(static_cast<double>(s) / static_cast<double>(steps.size()));
+    const Choice choice{kIntegrators[integrator], contact_time() / steps[s]};
+    const Outcome outcome = experiment.run(choice);
+    result.series.x.push_back(outcome.cost);
+    result.series.y.push_back(outcome.error);
+    csv.row(experiment.title, result.series.name, choice.step, 1.0 / steps[s], outcome.cost,
+            outcome.error);
+    // What rounding has reached says nothing about the order.
+    if (outcome.error > 1e-11) {
+      taken.push_back(choice.step);
+      errors.push_back(outcome.error);
+    }
+  }
+  result.order = bench::observed_order(taken, errors);
+  return result;
+}
+
+/// Runs all integrators on an experiment, and enters the orders into the table.
+/// @param tell  told the share that is done of each sweep
+Diagram diagram_of(const Experiment& experiment, const std::vector<int>& steps,
+                   const std::function<void(double)>& tell, bench::Csv& csv, Table& orders) {
+  Diagram diagram = error_diagram(experiment.title, experiment.error, Corner::none);
+  std::vector<std::string> row{experiment.title};
+  for (std::size_t k = 0; k < kIntegrators.size(); ++k) {
+    if (kIntegrators[k] == IntegratorModel::fourth_order && !experiment.conservative) {
+      row.push_back("not for dissipative scenes");
+      continue;
+    }
+    Sweep result = sweep(experiment, k, steps, tell, csv);
+    row.push_back((std::isnan(result.order) ? "rounding" : rounded(result.order, 3)) + " (" +
+                  experiment.orders[k] + ")");
+    diagram.plot.series.push_back(std::move(result.series));
+  }
+  orders.rows.push_back(std::move(row));
+  return diagram;
+}
+
+constexpr const char* kCaption =
+    "Error against processor time per simulated second, for steps from a twelfth of the contact "
+    "time (just below the safe limit) downwards. Where the motion is smooth (a to c) the orders "
+    "are those of theory, and the fourth order is worth its four force evaluations wherever more "
+    "than three digits are wanted. Where contacts begin and end (d, f, g) the force has a kink, "
+    "and no step ends on it: every scheme is left with second order, and velocity Verlet is the "
+    "cheapest. (Before and after a bounce nothing acts, and symplectic Euler is Verlet with its "
+    "velocities taken half a step later: d and f show them equal.) Where a contact begins with a "
+    "dashpot (e) the force jumps, and first order is left; discs that touch from the start (h) "
+    "keep second order. On an incline (i) the error is that of the soft contact, which takes a "
+    "while to load, and not of the step: smaller steps buy nothing. So: velocity Verlet with 1/20 "
+    "to 1/40 of the contact time for scenes with contacts, where errors of an impact are about 0.1 "
+    "%; the fourth order for smooth and conservative ones. Errors of impacts are root mean squares "
+    "over eight phases of the first contact within a step.";
+
 }  // namespace
 
 FigureResult draw_figure10(const FigureOptions& options) {
@@ -391,48 +453,15 @@ FigureResult draw_figure10(const FigureOptions& options) {
                {}};
   std::vector<Diagram> diagrams;
   const std::vector<Experiment> all = experiments(options);
-  const std::vector<int> steps = parts(options.quick);
   for (std::size_t e = 0; e < all.size(); ++e) {
-    const Experiment& experiment = all[e];
-    Diagram diagram{experiment.title,
-                    {.x = {.label = "processor s per simulated s", .log = true},
-                     .y = {.label = "error: " + experiment.error, .log = true},
-                     .series = {},
-                     .legend = e == 0 ? Corner::top_right : Corner::none}};
-    std::vector<std::string> row{experiment.title};
-    for (std::size_t k = 0; k < kIntegrators.size(); ++k) {
-      if (kIntegrators[k] == IntegratorModel::fourth_order && !experiment.conservative) {
-        row.push_back("not for dissipative scenes");
-        continue;
-      }
-      Series series = curve(static_cast<int>(k), std::string(name_of(kIntegrators[k])));
-      std::vector<double> taken, errors;
-      for (std::size_t s = 0; s < steps.size(); ++s) {
-        options.progress(
-            (static_cast<double>(e) + static_cast<double>(s) / static_cast<double>(steps.size())) /
-                static_cast<double>(all.size() + 2),
-            experiment.title);
-        const Choice choice{kIntegrators[k], contact_time() / steps[s]};
-        const Outcome outcome = experiment.run(choice);
-        series.x.push_back(outcome.cost);
-        series.y.push_back(outcome.error);
-        csv.row(experiment.title, series.name, choice.step, 1.0 / steps[s], outcome.cost,
-                outcome.error);
-        // What rounding has reached says nothing about the order.
-        if (outcome.error > 1e-11) {
-          taken.push_back(choice.step);
-          errors.push_back(outcome.error);
-        }
-      }
-      const double order = bench::observed_order(taken, errors);
-      row.push_back((std::isnan(order) ? "rounding" : rounded(order, 3)) + " (" +
-                    experiment.orders[k] + ")");
-      diagram.plot.series.push_back(std::move(series));
-    }
-    if (e == 0) leave_room_for_legend(diagram.plot);
-    orders.rows.push_back(std::move(row));
-    diagrams.push_back(std::move(diagram));
+    const auto tell = [&](double share) {
+      options.progress((static_cast<double>(e) + share) / static_cast<double>(all.size() + 2),
+                       all[e].title);
+    };
+    diagrams.push_back(diagram_of(all[e], parts(options.quick), tell, csv, orders));
   }
+  diagrams.front().plot.legend = Corner::top_right;  // for all of them
+  leave_room_for_legend(diagrams.front().plot);
   diagrams.push_back(incline_panel(options, csv));
   const Pressure pressure = gas_pressure(options);
 
@@ -440,21 +469,7 @@ FigureResult draw_figure10(const FigureOptions& options) {
   write_file(options.out / "fig10_integrators.csv", csv.text());
   result.downloads = {"fig10_integrators.csv"};
   result.tables = {orders};
-  result.caption =
-      "Error against processor time per simulated second, for steps from a twelfth of the contact "
-      "time (just below the safe limit) downwards. Where the motion is smooth (a to c) the orders "
-      "are those of theory, and the fourth order is worth its four force evaluations wherever more "
-      "than three digits are wanted. Where contacts begin and end (d, f, g) the force has a kink, "
-      "and no step ends on it: every scheme is left with second order, and velocity Verlet is the "
-      "cheapest. (Before and after a bounce nothing acts, and symplectic Euler is Verlet with its "
-      "velocities taken half a step later: d and f show them equal.) Where a contact begins with a "
-      "dashpot (e) the force jumps, and first order is left; discs that touch from the start (h) "
-      "keep second order. On an incline (i) the error is that of the soft contact, which takes a "
-      "while to load, and not of the step: smaller steps buy nothing. So: velocity Verlet with "
-      "1/20 "
-      "to 1/40 of the contact time for scenes with contacts, where errors of an impact are about "
-      "0.1 %; the fourth order for smooth and conservative ones. Errors of impacts are root mean "
-      "squares over eight phases of the first contact within a step.";
+  result.caption = kCaption;
   result.facts = {{"pressure of a dilute elastic gas, P A / (N k T)",
                    rounded(pressure.measured, 4) + " ± " + rounded(pressure.deviation, 2) +
                        "; hard discs have " + rounded(pressure.expected, 4) +

@@ -119,15 +119,14 @@ Outcome bounces(const Model& model, double overlap, const FigureOptions& options
       4);
 }
 
+/// A diagram: a scene and the models that are tried on it.
 struct Experiment {
   std::string title, error;
   std::vector<Model> models;
   Outcome (*run)(const Model&, double, const FigureOptions&);
 };
 
-}  // namespace
-
-FigureResult draw_figure11(const FigureOptions& options) {
+std::vector<Experiment> experiments() {
   const Model linear{"linear", NormalModel::linear, FrictionModel::none};
   const Model hertz{"Hertz", NormalModel::hertz, FrictionModel::none};
   const auto coarse = [](Model model) {
@@ -135,73 +134,79 @@ FigureResult draw_figure11(const FigureOptions& options) {
     model.steps = 25;
     return model;
   };
-  const std::vector<Experiment> experiments{
-      {"(a) oblique impact, no friction",
-       "velocities, of $v$",
-       {linear, coarse(linear), hertz, coarse(hertz)},
-       impact},
-      {"(b) oblique impact that slides, friction 0.1",
-       "velocities, of $v$",
-       {{"linear, viscous", NormalModel::linear, FrictionModel::viscous},
-        {"linear, elastic", NormalModel::linear, FrictionModel::elastic},
-        {"Hertz, viscous", NormalModel::hertz, FrictionModel::viscous},
-        {"Hertz, elastic", NormalModel::hertz, FrictionModel::elastic}},
-       impact},
-      {"(c) column of 10 discs at rest",
-       "mean overlap, of $r$",
-       {coarse(linear), coarse(hertz)},
-       column},
-      {"(d) third apex of a bouncing disc",
-       "height",
-       {linear, coarse(linear), hertz, coarse(hertz)},
-       bounces}};
-  const std::vector<double> overlaps =
-      options.quick ? std::vector<double>{1e-2, 1e-3} : std::vector<double>{3e-2, 1e-2, 3e-3, 1e-3};
+  return {{"(a) oblique impact, no friction",
+           "velocities, of $v$",
+           {linear, coarse(linear), hertz, coarse(hertz)},
+           impact},
+          {"(b) oblique impact that slides, friction 0.1",
+           "velocities, of $v$",
+           {{"linear, viscous", NormalModel::linear, FrictionModel::viscous},
+            {"linear, elastic", NormalModel::linear, FrictionModel::elastic},
+            {"Hertz, viscous", NormalModel::hertz, FrictionModel::viscous},
+            {"Hertz, elastic", NormalModel::hertz, FrictionModel::elastic}},
+           impact},
+          {"(c) column of 10 discs at rest",
+           "mean overlap, of $r$",
+           {coarse(linear), coarse(hertz)},
+           column},
+          {"(d) third apex of a bouncing disc",
+           "height",
+           {linear, coarse(linear), hertz, coarse(hertz)},
+           bounces}};
+}
 
+/// The overlaps of the sweep, in radii.
+std::vector<double> overlaps(bool quick) {
+  return quick ? std::vector<double>{1e-2, 1e-3} : std::vector<double>{3e-2, 1e-2, 3e-3, 1e-3};
+}
+
+/// Runs all models of an experiment; enters the errors into the CSV, the slopes into the table.
+Diagram diagram_of(const Experiment& experiment, const FigureOptions& options, bench::Csv& csv,
+                   Table& slopes) {
+  Diagram diagram = error_diagram(experiment.title, experiment.error, Corner::top_right);
+  for (const Model& model : experiment.models) {
+    Series series = curve(static_cast<int>(diagram.plot.series.size()), model.name);
+    for (const double overlap : overlaps(options.quick)) {
+      const Outcome outcome = experiment.run(model, overlap, options);
+      series.x.push_back(outcome.cost);
+      series.y.push_back(outcome.error);
+      csv.row(experiment.title, model.name, overlap, outcome.cost, outcome.error);
+    }
+    slopes.rows.push_back(
+        {experiment.title, model.name, rounded(bench::observed_order(series.x, series.y), 2)});
+    diagram.plot.series.push_back(std::move(series));
+  }
+  leave_room_for_legend(diagram.plot);
+  return diagram;
+}
+
+constexpr const char* kCaption =
+    "Error against the rigid limit, for contacts from soft (left: an impact at 1 m/s overlaps by 3 "
+    "% of a radius) to stiff (right: by 0.1 %), with 100 or 25 steps to a contact. What softness "
+    "costs falls with the overlap, and the overlap with the inverse of the processor time (at rest "
+    "with its square). Where the step's own error is reached (a, d: 25 steps) more stiffness buys "
+    "nothing: stiffness and step belong together. Hertz's law is as good as the linear spring at "
+    "the same overlap and costs about the same.";
+
+}  // namespace
+
+FigureResult draw_figure11(const FigureOptions& options) {
   FigureResult result;
   bench::Csv csv("scene,law,overlap_of_impact[r],cost[s/s],error[-]");
-  Table orders{"How the error falls as processor time grows (slope in the diagrams)",
+  Table slopes{"How the error falls as processor time grows (slope in the diagrams)",
                {"scene", "law", "slope"},
                {}};
   std::vector<Diagram> diagrams;
-  for (std::size_t e = 0; e < experiments.size(); ++e) {
-    const Experiment& experiment = experiments[e];
-    Diagram diagram{experiment.title,
-                    {.x = {.label = "processor s per simulated s", .log = true},
-                     .y = {.label = "error: " + experiment.error, .log = true},
-                     .series = {},
-                     .legend = Corner::top_right}};
-    for (const Model& model : experiment.models) {
-      Series series = curve(static_cast<int>(diagram.plot.series.size()), model.name);
-      for (const double overlap : overlaps) {
-        options.progress(static_cast<double>(e) / static_cast<double>(experiments.size()),
-                         experiment.title);
-        const Outcome outcome = experiment.run(model, overlap, options);
-        series.x.push_back(outcome.cost);
-        series.y.push_back(outcome.error);
-        csv.row(experiment.title, model.name, overlap, outcome.cost, outcome.error);
-      }
-      orders.rows.push_back(
-          {experiment.title, model.name, rounded(bench::observed_order(series.x, series.y), 2)});
-      diagram.plot.series.push_back(std::move(series));
-    }
-    leave_room_for_legend(diagram.plot);
-    diagrams.push_back(std::move(diagram));
+  const std::vector<Experiment> all = experiments();
+  for (std::size_t e = 0; e < all.size(); ++e) {
+    options.progress(static_cast<double>(e) / static_cast<double>(all.size()), all[e].title);
+    diagrams.push_back(diagram_of(all[e], options, csv, slopes));
   }
   draw_diagrams(diagrams, 2, 165, options, "fig11", result);
   write_file(options.out / "fig11_stiffness.csv", csv.text());
   result.downloads = {"fig11_stiffness.csv"};
-  result.tables = {orders};
-  result.caption =
-      "Error against the rigid limit, for contacts from soft (left: an impact at 1 m/s overlaps by "
-      "3 % of a radius) to stiff (right: by 0.1 %), with 100 or 25 steps to a contact. What "
-      "softness "
-      "costs falls with the overlap, and the overlap with the inverse of the processor time (at "
-      "rest "
-      "with its square). Where the step's own error is reached (a, d: 25 steps) more stiffness "
-      "buys "
-      "nothing: stiffness and step belong together. Hertz's law is as good as the linear spring at "
-      "the same overlap and costs about the same.";
+  result.tables = {slopes};
+  result.caption = kCaption;
   return result;
 }
 

@@ -154,8 +154,7 @@ Diagram misses_panel(const std::string& title,
   return diagram;
 }
 
-// ---- What knowing the neighbours costs
-// -----------------------------------------------------------
+// ---- What knowing the neighbours costs ---------------------------------------------------------
 
 /// Another neighbourhood, asked at every step: no margin, no list to live on.
 template <int Dim, class N>
@@ -272,6 +271,36 @@ Diagram cost_panel(const std::string& title, const std::string& axis,
   return diagram;
 }
 
+/// The scenes of panels (c) and (d), each with what is varied.
+struct CostScenes {
+  std::vector<std::pair<double, Scene<2>>> growth, ratios;
+  int count;  ///< of the small discs where ratios are varied
+};
+
+CostScenes cost_scenes(bool quick) {
+  CostScenes scenes{{}, {}, quick ? 300 : 5000};
+  for (const int n :
+       quick ? std::vector<int>{100, 300} : std::vector<int>{100, 300, 1000, 3000, 10000}) {
+    scenes.growth.emplace_back(n, gas<2>(n, 1));
+  }
+  for (const double ratio :
+       quick ? std::vector<double>{1, 10} : std::vector<double>{1, 3, 10, 30, 100}) {
+    scenes.ratios.emplace_back(ratio, gas<2>(scenes.count, ratio));
+  }
+  return scenes;
+}
+
+constexpr const char* kCaption =
+    "(a, b) A dense gas of grains flows while its triangulation stands still: share of the "
+    "contacts that are not among its edges, over the largest displacement of a grain since T was "
+    "built. The dashed line is the bound of the theorem for grains of one size that did not "
+    "overlap when T was built, (sqrt 2 - 1) r: to its left nothing can be missed, and the first "
+    "misses come far to its right. The engine keeps to the bound, grain by grain. (c, d) What it "
+    "costs to know the neighbours of discs in motion: a whole step, elastic discs without "
+    "friction. For one size the triangulation, which leaps here, costs at most a tenth more than a "
+    "list of cells that lives for several steps (Verlet). The wider the sizes, the more cells "
+    "cost; the triangulation does not notice: it is the choice from a ratio of about 5 on.";
+
 }  // namespace
 
 FigureResult draw_figure12(const FigureOptions& options) {
@@ -280,46 +309,28 @@ FigureResult draw_figure12(const FigureOptions& options) {
   bench::Csv cost(
       "panel,way,parameter,grains[-],time[ns/grain/step],contacts_per_grain[-],audited[-],"
       "missed[-],energy_residual[-]");
-  const int discs = options.quick ? 200 : 1000, spheres = options.quick ? 200 : 1000;
-  const Misses equal2 = stale_contacts<2>(discs, 1, options);
-  const Misses mixed2 = stale_contacts<2>(discs, 3, options);
-  const Misses equal3 = stale_contacts<3>(spheres, 1, options);
-  const Misses mixed3 = stale_contacts<3>(spheres, 3, options);
+  const int grains = options.quick ? 200 : 1000;
+  const Misses equal2 = stale_contacts<2>(grains, 1, options);
+  const Misses mixed2 = stale_contacts<2>(grains, 3, options);
+  const Misses equal3 = stale_contacts<3>(grains, 1, options);
+  const Misses mixed3 = stale_contacts<3>(grains, 3, options);
 
-  std::vector<std::pair<double, Scene<2>>> growth, ratios;
-  for (const int n :
-       options.quick ? std::vector<int>{100, 300} : std::vector<int>{100, 300, 1000, 3000, 10000}) {
-    growth.emplace_back(n, gas<2>(n, 1));
-  }
-  for (const double ratio :
-       options.quick ? std::vector<double>{1, 10} : std::vector<double>{1, 3, 10, 30, 100}) {
-    ratios.emplace_back(ratio, gas<2>(options.quick ? 300 : 5000, ratio));
-  }
+  const CostScenes scenes = cost_scenes(options.quick);
   Cost worst;
   std::vector<Diagram> diagrams{
       misses_panel("(a) T stands still, discs", {{"one size", equal2}, {"sizes 1 : 3", mixed2}},
                    missed),
       misses_panel("(b) T stands still, spheres", {{"one size", equal3}, {"sizes 1 : 3", mixed3}},
-                   missed)};
-  diagrams.push_back(cost_panel("(c) discs in motion", "discs", growth, options, cost, worst));
-  diagrams.push_back(
-      cost_panel("(d) a few large among " + std::to_string(options.quick ? 300 : 5000),
-                 "ratio of radii", ratios, options, cost, worst));
+                   missed),
+      cost_panel("(c) discs in motion", "discs", scenes.growth, options, cost, worst),
+      cost_panel("(d) a few large among " + std::to_string(scenes.count), "ratio of radii",
+                 scenes.ratios, options, cost, worst)};
   diagrams.back().plot.x.low = 0.7;
   draw_diagrams(diagrams, 2, 175, options, "fig12", result);
   write_file(options.out / "fig12_missed.csv", missed.text());
   write_file(options.out / "fig12_cost.csv", cost.text());
   result.downloads = {"fig12_missed.csv", "fig12_cost.csv"};
-  result.caption =
-      "(a, b) A dense gas of grains flows while its triangulation stands still: share of the "
-      "contacts that are not among its edges, over the largest displacement of a grain since T was "
-      "built. The dashed line is the bound of the theorem for grains of one size that did not "
-      "overlap when T was built, (sqrt 2 - 1) r: to its left nothing can be missed, and the first "
-      "misses come far to its right. The engine keeps to the bound, grain by grain. (c, d) What it "
-      "costs to know the neighbours of discs in motion: a whole step, elastic discs without "
-      "friction. For one size the triangulation, which leaps here, costs at most a tenth more than "
-      "a list of cells that lives for several steps (Verlet). The wider the sizes, the more cells "
-      "cost; the triangulation does not notice: it is the choice from a ratio of about 5 on.";
+  result.caption = kCaption;
   const auto first = [](const Misses& m) { return rounded(m.smallest_missed, 3) + " r"; };
   result.facts = {{"smallest displacement at which a contact was missed: discs of one size, 1 : 3",
                    first(equal2) + ", " + first(mixed2)},

@@ -36,7 +36,7 @@ constexpr int kSites = 512;  // in each set
 constexpr std::uint64_t kSeed = 13;
 constexpr double kMapWidth = 0.72 * kMapSide;  // three pixels for a double at 300 dpi [pt]
 
-/// So many that a processor does not learn their signs by heart.
+/// The number of calls that are timed: so many that no processor learns their signs by heart.
 int calls(bool quick) {
   return quick ? 800 : 8000;
 }
@@ -88,10 +88,10 @@ Trial trial_of(const std::string& name, std::vector<Query<Predicate>> queries, b
 }
 
 template <int Dim>
-void add_rows_of(std::vector<Row>& rows, bool quick, const std::function<void()>& checkpoint) {
+void add_rows_of(std::vector<Row>& rows, bool quick, const StopCheck& check_stop) {
   for (const TrialSet<Dim>& set : trial_sets<Dim>(kSites)) {
     const auto trial = [&]<class Predicate>(const std::string& name, Predicate) {
-      checkpoint();
+      check_stop();
       return trial_of<Predicate>(name, draw_queries<Predicate>(set.sites, calls(quick), kSeed),
                                  quick);
     };
@@ -119,7 +119,7 @@ Row sorted_row(bool quick) {
 }
 
 /// All trials take turns, so that a machine that slows down slows all of them.
-void measure(std::vector<Row>& rows, int turns, const std::function<void()>& checkpoint) {
+void measure(std::vector<Row>& rows, int turns, const StopCheck& check_stop) {
   std::vector<std::array<std::array<std::vector<double>, 3>, 2>> samples(rows.size());
   for (int turn = 0; turn < turns; ++turn) {
     for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -127,7 +127,7 @@ void measure(std::vector<Row>& rows, int turns, const std::function<void()>& che
         const Times times = rows[k].trials[t].measure();
         for (std::size_t way = 0; way < 3; ++way) samples[k][t][way].push_back(times[way]);
       }
-      checkpoint();
+      check_stop();
     }
   }
   for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -363,29 +363,83 @@ std::string range_of(const std::vector<Row>& rows, const std::function<bool(cons
   return from == to ? from : from + " to " + to;
 }
 
-}  // namespace
+bool is_usual(const Row& row) {
+  return row.sites == "random" || row.sites.starts_with("packing");
+}
+bool is_sorted(const Row& row) {
+  return row.sites.ends_with("sorted by sign");
+}
+bool is_on_lattice(const Row& row) {
+  return row.sites.ends_with("lattice") || row.sites == "face-centred cubic";
+}
+bool is_disturbed(const Row& row) {
+  return row.sites.ends_with("off by 1e-6");
+}
+double filtered_cost(const Trial& trial) {
+  return trial.cost(kFiltered);
+}
+double exact_cost(const Trial& trial) {
+  return trial.cost(kExact);
+}
 
-FigureResult draw_figure13(const FigureOptions& options) {
-  const int turns = options.quick ? 1 : 3;
-  double done = 0;
-  const auto checkpoint = [&] {
-    options.check_stop();
-    options.progress(std::min(1.0, done++ / (18 * (turns + 2))), "predicates");
-  };
-  const OrientationMap map = orientation_map(kMapSide);
-  std::vector<Row> rows;
-  add_rows_of<2>(rows, options.quick, checkpoint);
-  add_rows_of<3>(rows, options.quick, checkpoint);
-  const std::size_t shown = rows.size();
-  rows.push_back(sorted_row<2>(options.quick));
-  rows.push_back(sorted_row<3>(options.quick));
-  measure(rows, turns, checkpoint);
-  draw(map, std::span(rows).first(shown), options);
+std::string caption_of(const std::vector<Row>& rows) {
+  return "(a), (b) The side of a line on which doubles see the points of a grid of neighbouring "
+         "doubles, and where they are (after Kettner et al., Comput. Geom. 40 (2008) 61). (c) "
+         "Share of calls in which doubles without a filter give a wrong sign, for a site and "
+         "others of its nearest; (d), (e) processor time of a call in doubles, behind the filter, "
+         "and in multiprecision floats alone. Lattices have the pitch 0.1, which no double is. "
+         "Lesson: for sites at random and in packings, be they a million radii away from the "
+         "origin, a filter costs " +
+         range_of(rows, is_usual, filtered_cost) + " times doubles without one (" +
+         range_of(rows, is_sorted, filtered_cost) +
+         " where calls come sorted by their sign: the rest is the branch on a sign that nobody can "
+         "predict, which a caller of plain doubles takes himself), exact arithmetic alone " +
+         range_of(rows, is_usual, exact_cost) + " times. On lattices doubles are wrong in " +
+         range_of(rows, is_on_lattice, wrong_share) +
+         " % of the calls, and the filtered call costs " +
+         range_of(rows, is_on_lattice, filtered_cost) +
+         " times one in doubles; off by a millionth of the pitch they cost " +
+         range_of(rows, is_disturbed, filtered_cost) +
+         " times, which is why a run keeps its reference centres a hair's breadth off the grains.";
+}
 
-  FigureResult result;
+std::vector<Fact> facts_of(const OrientationMap& map, const std::vector<Row>& rows) {
+  int wrong = 0, opposite = 0;
+  for (std::size_t k = 0; k < map.exact.size(); ++k) {
+    wrong += map.plain[k] != map.exact[k];
+    opposite += map.plain[k] * map.exact[k] < 0;
+  }
+  return {
+      {"(a): wrong signs", std::to_string(wrong) + " of " + std::to_string(map.exact.size()) +
+                               ", " + std::to_string(opposite) + " of them opposite"},
+      {"filtered over double, random sites and packings", range_of(rows, is_usual, filtered_cost)},
+      {"filtered over double, calls sorted by sign", range_of(rows, is_sorted, filtered_cost)},
+      {"filtered over double, lattices", range_of(rows, is_on_lattice, filtered_cost)},
+      {"filtered over double, lattices off by a millionth of the pitch",
+       range_of(rows, is_disturbed, filtered_cost)},
+      {"exact over double, random sites and packings", range_of(rows, is_usual, exact_cost)},
+      {"wrong signs of doubles, random sites and packings",
+       range_of(rows, is_usual, wrong_share) + " %"},
+      {"wrong signs of doubles, lattices", range_of(rows, is_on_lattice, wrong_share) + " %"}};
+}
+
+/// Signs and times of all trials as CSV.
+std::string csv_of(const std::vector<Row>& rows) {
   bench::Csv csv(
       "dimension,sites,predicate,calls,wrong,opposite,ties,beyond_intervals,double[ns],"
       "filtered[ns],exact[ns]");
+  for (const Row& row : rows) {
+    for (const Trial& t : row.trials) {
+      const Tally& n = t.tally;
+      csv.row(row.dim, row.sites, t.predicate, n.queries, n.wrong, n.opposite, n.ties, n.undecided,
+              t.times[kPlain], t.times[kFiltered], t.times[kExact]);
+    }
+  }
+  return csv.text();
+}
+
+/// Signs and times of all trials for people.
+Table table_of(const std::vector<Row>& rows) {
   Table table{"Signs of doubles, and times of a call",
               {"sites", "predicate", "wrong", "opposite", "ties", "beyond intervals", "double [ns]",
                "filtered [ns]", "exact [ns]"},
@@ -393,8 +447,6 @@ FigureResult draw_figure13(const FigureOptions& options) {
   for (const Row& row : rows) {
     for (const Trial& t : row.trials) {
       const Tally& n = t.tally;
-      csv.row(row.dim, row.sites, t.predicate, n.queries, n.wrong, n.opposite, n.ties, n.undecided,
-              t.times[kPlain], t.times[kFiltered], t.times[kExact]);
       const auto share = [&](int part) { return rounded(percent(part, n.queries)) + " %"; };
       table.rows.push_back({(row.dim == 2 ? "plane: " : "space: ") + row.sites, t.predicate,
                             share(n.wrong), share(n.opposite), share(n.ties), share(n.undecided),
@@ -402,56 +454,35 @@ FigureResult draw_figure13(const FigureOptions& options) {
                             two_digits(t.times[kExact])});
     }
   }
-  write_file(options.out / "fig13_predicates.csv", csv.text());
+  return table;
+}
 
-  int wrong = 0, opposite = 0;
-  for (std::size_t k = 0; k < map.exact.size(); ++k) {
-    wrong += map.plain[k] != map.exact[k];
-    opposite += map.plain[k] * map.exact[k] < 0;
-  }
-  const auto usual = [](const Row& row) {
-    return row.sites == "random" || row.sites.starts_with("packing");
+}  // namespace
+
+FigureResult draw_figure13(const FigureOptions& options) {
+  const int turns = options.quick ? 1 : 3;
+  double done = 0;
+  const StopCheck check_stop = [&] {
+    options.check_stop();
+    options.progress(std::min(1.0, done++ / (18 * (turns + 2))), "predicates");
   };
-  const auto sorted = [](const Row& row) { return row.sites.ends_with("sorted by sign"); };
-  const auto on_lattice = [](const Row& row) {
-    return row.sites.ends_with("lattice") || row.sites == "face-centred cubic";
-  };
-  const auto disturbed = [](const Row& row) { return row.sites.ends_with("off by 1e-6"); };
-  const auto filtered = [](const Trial& t) { return t.cost(kFiltered); };
-  const auto exact = [](const Trial& t) { return t.cost(kExact); };
-  result.caption =
-      "(a), (b) The side of a line on which doubles see the points of a grid of neighbouring "
-      "doubles, and where they are (after Kettner et al., Comput. Geom. 40 (2008) 61). (c) Share "
-      "of calls in which doubles without a filter give a wrong sign, for a site and others of its "
-      "nearest; (d), (e) processor time of a call in doubles, behind the filter, and in "
-      "multiprecision floats alone. Lattices have the pitch 0.1, which no double is. Lesson: for "
-      "sites at random and in packings, be they a million radii away from the origin, a filter "
-      "costs " +
-      range_of(rows, usual, filtered) + " times doubles without one (" +
-      range_of(rows, sorted, filtered) +
-      " where calls come sorted by their sign: the rest is the branch on a sign that nobody can "
-      "predict, which a caller of plain doubles takes himself), exact arithmetic alone " +
-      range_of(rows, usual, exact) + " times. On lattices doubles are wrong in " +
-      range_of(rows, on_lattice, wrong_share) + " % of the calls, and the filtered call costs " +
-      range_of(rows, on_lattice, filtered) +
-      " times one in doubles; off by a millionth of the pitch they cost " +
-      range_of(rows, disturbed, filtered) +
-      " times, which is why a run keeps its reference centres a hair's breadth off the grains.";
-  result.facts = {
-      {"(a): wrong signs", std::to_string(wrong) + " of " + std::to_string(map.exact.size()) +
-                               ", " + std::to_string(opposite) + " of them opposite"},
-      {"filtered over double, random sites and packings", range_of(rows, usual, filtered)},
-      {"filtered over double, calls sorted by sign", range_of(rows, sorted, filtered)},
-      {"filtered over double, lattices", range_of(rows, on_lattice, filtered)},
-      {"filtered over double, lattices off by a millionth of the pitch",
-       range_of(rows, disturbed, filtered)},
-      {"exact over double, random sites and packings", range_of(rows, usual, exact)},
-      {"wrong signs of doubles, random sites and packings",
-       range_of(rows, usual, wrong_share) + " %"},
-      {"wrong signs of doubles, lattices", range_of(rows, on_lattice, wrong_share) + " %"}};
+  const OrientationMap map = orientation_map(kMapSide);
+  std::vector<Row> rows;
+  add_rows_of<2>(rows, options.quick, check_stop);
+  add_rows_of<3>(rows, options.quick, check_stop);
+  const std::size_t shown = rows.size();
+  rows.push_back(sorted_row<2>(options.quick));
+  rows.push_back(sorted_row<3>(options.quick));
+  measure(rows, turns, check_stop);
+  draw(map, std::span(rows).first(shown), options);
+  write_file(options.out / "fig13_predicates.csv", csv_of(rows));
+
+  FigureResult result;
+  result.caption = caption_of(rows);
+  result.facts = facts_of(map, rows);
   result.pictures = {"fig13.png", "fig13.pdf"};
   result.downloads = {"fig13_predicates.csv"};
-  result.tables = {table};
+  result.tables = {table_of(rows)};
   return result;
 }
 

@@ -38,7 +38,9 @@ namespace lagrain::figures {
 
 namespace {
 
-using Checkpoint = std::function<void(const std::string& doing)>;
+/// A function that is told what is being done; it shows that, and throws Interrupted once the user
+/// wants to stop.
+using Tell = std::function<void(const std::string& doing)>;
 
 std::string of_dimension(int dim) {
   return dim == 2 ? "discs" : "spheres";
@@ -68,7 +70,7 @@ struct Sites {
   double radius = 0;  ///< mean
 };
 
-/// In the order of Hilbert's curve, as a run keeps its grains.
+/// The sites of a dense packing, in the order of Hilbert's curve, as a run keeps its grains.
 template <int Dim>
 Sites<Dim> packed_sites(int count) {
   const std::vector<Grain<Dim>> grains = dense_packing<Dim>(count, 1);
@@ -107,9 +109,9 @@ double seconds(F&& f) {
 
 /// Every update starts from the packing as it was built, and is followed by a build of its result.
 template <int Dim>
-std::vector<Updates> measure_updates(int count, int rounds, const Checkpoint& checkpoint) {
+std::vector<Updates> measure_updates(int count, int rounds, const Tell& tell) {
   const std::string doing = "updates of " + of_dimension(Dim);
-  checkpoint(doing);
+  tell(doing);
   const Sites<Dim> sites = packed_sites<Dim>(count);
   Triangulation<Dim> before, built;
   before.build(sites.x, sites.weight);
@@ -140,7 +142,7 @@ std::vector<Updates> measure_updates(int count, int rounds, const Checkpoint& ch
                            differences(updated.hidden(), built.hidden());
       updates.moved += static_cast<std::int64_t>(moved.size());
       ++updates.count;
-      checkpoint(doing);
+      tell(doing);
     }
   }
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -297,7 +299,7 @@ Scene<Dim> shaken_grains(bool quick, double fraction) {
 
 /// Runs of all skins at the usual time step, and of all time steps at the usual skin, side by side.
 template <int Dim>
-std::vector<RunCost> measure_runs(bool quick, const Checkpoint& checkpoint) {
+std::vector<RunCost> measure_runs(bool quick, const Tell& tell) {
   constexpr int kSlices = 40;
   std::vector<RunCost> costs;
   for (const double skin : kSkins)
@@ -320,7 +322,7 @@ std::vector<RunCost> measure_runs(bool quick, const Checkpoint& checkpoint) {
       costs[k].processor_time +=
           seconds([&] { run.advance_to(run.scene().duration * slice / kSlices); });
       audits[k].check(run.positions(), run.radii(), run.near_pairs());
-      checkpoint("shaken " + of_dimension(Dim));
+      tell("shaken " + of_dimension(Dim));
     }
   }
   const auto usual = static_cast<std::size_t>(std::find(kSkins.begin(), kSkins.end(), kUsualSkin) -
@@ -425,8 +427,8 @@ void tell_updates(const std::array<std::vector<Updates>, 2>& measured, const Fig
       "dimension,share_moved[-],displacement[mean_radii],updates,moved,flips,taken_out,unstuck,"
       "put_back,rebuilds,differences_from_build");
   Table table{
-      "Updates of the triangulation: time over that of a build; per moved site flips, sites "
-      "taken out, unstuck; rebuilds",
+      "Updates of the triangulation: time over that of a build; per moved site flips, sites taken "
+      "out, unstuck; rebuilds",
       {"grains", "moved", "displacement [mean radii]", "update / build", "flips", "taken out",
        "unstuck", "rebuilds / updates", "edges unlike a build's"},
       {}};
@@ -516,9 +518,9 @@ std::string words(const std::array<std::vector<Updates>, 2>& updates,
          "What the update does when all move. (e) to (j) Runs of " +
          std::to_string(grains) +
          " grains thrown by a box that shakes with four times gravity, which T follows by flips "
-         "alone here: otherwise it would leap, with wider skins. Every update was compared "
-         "with the build that follows it, and contacts in the runs with those found from nothing: "
-         "see below. Lesson: the displacement from which on a build is faster, in radii, is " +
+         "alone here: otherwise it would leap, with wider skins. Every update was compared with "
+         "the build that follows it, and contacts in the runs with those found from nothing: see "
+         "below. Lesson: the displacement from which on a build is faster, in radii, is " +
          break_even_text(updates, 1) + " where all sites move, " + break_even_text(updates, 0.1) +
          " where 10 % do, and " + break_even_text(updates, 0.01) +
          " where 1 % do. The instability under large steps that Ferrez & Liebling warn of is "
@@ -533,8 +535,7 @@ std::string words(const std::array<std::vector<Updates>, 2>& updates,
          "step. Skin factors of " +
          cheap_skins(runs[0]) + " (discs) and " + cheap_skins(runs[1]) +
          " (spheres) are within a tenth of the fastest. Long time steps move more references in "
-         "each, but make the motion as a "
-         "whole cheaper: discs by " +
+         "each, but make the motion as a whole cheaper: discs by " +
          rounded(of_motion(shortest_step) / of_motion(longest_step), 2) + " from 1/" +
          rounded(1 / shortest_step.fraction) + " to 1/" + rounded(1 / longest_step.fraction) +
          " of the contact time, while the energy residual grows from " +
@@ -590,7 +591,7 @@ void tell_runs(const std::array<std::vector<RunCost>, 2>& measured, const Figure
 
 FigureResult draw_figure14(const FigureOptions& options) {
   double done = 0;
-  const Checkpoint checkpoint = [&](const std::string& doing) {
+  const Tell tell = [&](const std::string& doing) {
     options.check_stop();
     options.progress(done / 4, doing);
   };
@@ -598,13 +599,13 @@ FigureResult draw_figure14(const FigureOptions& options) {
   const int discs = options.quick ? 1000 : 20000, spheres = options.quick ? 1000 : 10000;
   std::array<std::vector<Updates>, 2> updates;
   std::array<std::vector<RunCost>, 2> runs;
-  updates[0] = measure_updates<2>(discs, rounds, checkpoint);
+  updates[0] = measure_updates<2>(discs, rounds, tell);
   ++done;
-  updates[1] = measure_updates<3>(spheres, rounds, checkpoint);
+  updates[1] = measure_updates<3>(spheres, rounds, tell);
   ++done;
-  runs[0] = measure_runs<2>(options.quick, checkpoint);
+  runs[0] = measure_runs<2>(options.quick, tell);
   ++done;
-  runs[1] = measure_runs<3>(options.quick, checkpoint);
+  runs[1] = measure_runs<3>(options.quick, tell);
 
   FigureResult result;
   result.caption = words(updates, runs, discs, spheres, shaken_count(options.quick));

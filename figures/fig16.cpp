@@ -30,7 +30,7 @@ constexpr double kR = 1, kG = kGameGravity;  // [m], [m/s^2]
 constexpr double kMass = std::numbers::pi;   // of a disc, at 1 kg/m^3 [kg]
 constexpr int kPhases = 16;
 
-/// A scene with a known answer, and what is judged: one panel each.
+/// A scene with a known answer, on which both engines are judged.
 struct Contest {
   struct Panel {
     std::string title;
@@ -147,7 +147,7 @@ Outcome collide(const EngineSettings& settings, const Hit& hit, int phases,
       phases);
 }
 
-/// For what rests: Box2D's own threshold, or every step of gravity would bounce.
+/// The settings for what rests: with Box2D's own threshold, or every step of gravity would bounce.
 EngineSettings at_rest(EngineSettings settings) {
   if (auto* box2d = std::get_if<Box2dSettings>(&settings)) box2d->bounce_above = 1;
   return settings;
@@ -389,7 +389,7 @@ const Point* cheapest(const std::vector<Point>& points, bool box2d, double limit
   return best;
 }
 
-/// That in words, or how far the engine came.
+/// The cheapest setting within a limit in words, or how far the engine came.
 std::string cheapest_text(const std::vector<Point>& points, bool box2d, double limit) {
   if (const Point* best = cheapest(points, box2d, limit)) {
     return rounded(1e3 * best->outcome.cost, 2) + " ms: " + name_of(best->settings);
@@ -499,6 +499,108 @@ void add_row(bench::Csv& csv, const Contest::Panel& panel, const Point& point) {
   }
 }
 
+/// A contest that has been run: its diagrams, and all points of each.
+struct Judged {
+  std::vector<Diagram> panels;
+  std::vector<std::vector<Point>> points;
+};
+
+/// Runs both engines over their sweeps, in turns.
+/// @param tell  told the share that is done and the settings that come next
+Judged run_contest(const Contest& contest,
+                   const std::function<void(double, const EngineSettings&)>& tell,
+                   bench::Csv& csv) {
+  Judged judged;
+  for (const Contest::Panel& panel : contest.panels) {
+    judged.panels.push_back(error_diagram(panel.title, panel.error, Corner::none));
+  }
+  const std::size_t count = contest.panels.size();
+  judged.points.resize(count);
+  const std::vector<Sweep> curves = sweeps(contest);
+  for (std::size_t k = 0; k < curves.size(); ++k) {
+    std::vector<Series> series(count, series_of(curves[k], k));
+    for (const EngineSettings& settings : curves[k].settings) {
+      tell(static_cast<double>(k) / static_cast<double>(curves.size()), settings);
+      const std::vector<Outcome> outcomes = contest.run(settings);
+      for (std::size_t p = 0; p < count; ++p) {
+        series[p].x.push_back(outcomes[p].cost);
+        series[p].y.push_back(outcomes[p].error);
+        judged.points[p].push_back({settings, outcomes[p]});
+        add_row(csv, contest.panels[p], judged.points[p].back());
+      }
+    }
+    for (std::size_t p = 0; p < count; ++p) judged.panels[p].plot.series.push_back(series[p]);
+  }
+  for (Diagram& panel : judged.panels) {  // in the legend each engine stands by itself
+    std::vector<Series>& s = panel.plot.series;
+    s = {s[0], s[2], s[4], s[1], s[3], s[5]};
+  }
+  return judged;
+}
+
+/// The cheapest settings of both engines on a panel, for two limits of the error.
+std::vector<std::string> cost_row(const Contest::Panel& panel, const std::vector<Point>& points) {
+  std::vector<std::string> row{panel.title.substr(4) + ": " + panel.error};
+  for (const double limit : {1e-2, 1e-3}) {
+    for (const bool box2d : {true, false}) row.push_back(cheapest_text(points, box2d, limit));
+    const double ratio = ratio_within(points, limit);
+    row.push_back(std::isnan(ratio) ? "" : rounded(ratio, 2));
+  }
+  return row;
+}
+
+std::string orders_text(const std::vector<Point>& points) {
+  return "Box2D " + rounded(order_in_step(points, true), 2) + "; lagrain, stiffest springs, " +
+         rounded(order_in_step(points, false), 2);
+}
+
+std::string caption_of(int phases) {
+  return "Error against processor time per simulated second, Box2D in orange, lagrain in blue; "
+         "discs of 1 m under 10 m/s^2, the units for which Box2D's tolerances are made. Box2D's "
+         "step goes from 1/60 s to 1/3840 s (columns: 1/960 s) along its curves, one for each "
+         "number of iterations for velocities and places; lagrain's stiffness goes along its own, "
+         "one for the largest step that it allows, and for a half and a quarter of it, in (a) a "
+         "quarter and a sixteenth. (a) Height of the first three apices after a fall of 5 m. (b, "
+         "c) All six velocities after an impact off the centre, e = 0.9, against rigid discs. (d) "
+         "Velocity and spin after 2 s. (e) All velocities. (f to i) Columns that were put down "
+         "without overlap, over a second after they had time to come to rest; (g, i) the contact "
+         "whose mean force errs most from the weight on it. In (a, b, c, e) errors are root mean "
+         "squares over " +
+         std::to_string(phases) +
+         " phases of the impact within a step: a single phase is luck. What to take: with few "
+         "bodies neither engine is the cheaper one throughout, the table says where which is. "
+         "Box2D needs one step for an impact and springs ten or more, but a step of few discs "
+         "costs lagrain less. Friction that sticks (c) is Box2D's best case, a row of discs (e) "
+         "lagrain's. In (a) neither does better than first order: Box2D because impacts fall "
+         "between its steps, lagrain because a dashpot sets in at once. On inclines (d) and in the "
+         "cradle (e) Box2D errs by single precision alone, which grows with the number of steps; "
+         "springs err by their depth. Discs in touch have no one rigid answer (last table): "
+         "Box2D's all move off together, springs pass nearly all on. At rest, overlap is to "
+         "lagrain a load over a stiffness and to Box2D a tolerance, which more iterations or "
+         "shorter steps lower, at a price that grows with the column. Forces of springs end at "
+         "double precision, Box2D's at single. With lagrain, choose the stiffness by the error, "
+         "and the largest step: shorter ones help in (a) and (e) alone.";
+}
+
+/// @param orders  observed in (a), see orders_text
+std::vector<Fact> facts_of(const std::string& orders) {
+  Scene<2> unit = game_scene();
+  unit.grains = {{.position = {0, 0}, .radius = kR}};
+  const Box2dWorld world(*make_scene_run(unit, 1), {});
+  return {
+      {"Box2D", "the library calls itself " + box2d_version() + " (so does release 2.4.1)"},
+      {"Box2D's tolerance of length", rounded(100 * world.slop() / kR) + " % of a radius"},
+      {"Box2D's settings",
+       "no sleeping, collisions within a step seen (CCD), restitution threshold 0 for impacts and "
+       "its own 1 m/s for what rests"},
+      {"observed order in the step, (a)", orders},
+      {"lagrain's friction",
+       "viscous in (b, c), so that a contact that sticks keeps no slip; elastic in (d)"},
+      {"Box2D 3 (commit 617d32ab; Debian has no package of it, not reproducible here)",
+       "friction and restitution together leave an error of 0.085 v in (b) at every step; column "
+       "of 50 with its defaults: overlap 0.028 r"}};
+}
+
 }  // namespace
 
 FigureResult draw_figure16(const FigureOptions& options) {
@@ -510,110 +612,30 @@ FigureResult draw_figure16(const FigureOptions& options) {
               {"scene", "Box2D, 0.01", "lagrain, 0.01", "lagrain / Box2D", "Box2D, 0.001",
                "lagrain, 0.001", "lagrain / Box2D"},
               {}};
-  std::string orders;
+  std::string orders;  // in the first panel
   std::vector<Diagram> diagrams;
   const std::vector<Contest> all = contests(options);
   for (std::size_t c = 0; c < all.size(); ++c) {
-    const Contest& contest = all[c];
-    std::vector<Diagram> panels;
-    for (const Contest::Panel& panel : contest.panels) {
-      panels.push_back({panel.title,
-                        {.x = {.label = "processor s per simulated s", .log = true},
-                         .y = {.label = "error: " + panel.error, .log = true},
-                         .series = {},
-                         .legend = c == 0 ? Corner::top_right : Corner::none}});
-    }
-    std::vector<std::vector<Point>> points(panels.size());
-    const std::vector<Sweep> curves = sweeps(contest);
-    for (std::size_t k = 0; k < curves.size(); ++k) {  // the engines take turns
-      std::vector<Series> series(panels.size(), series_of(curves[k], k));
-      for (const EngineSettings& settings : curves[k].settings) {
-        options.progress(
-            (static_cast<double>(c) + static_cast<double>(k) / static_cast<double>(curves.size())) /
-                static_cast<double>(all.size()),
-            name_of(settings));
-        const std::vector<Outcome> outcomes = contest.run(settings);
-        for (std::size_t p = 0; p < panels.size(); ++p) {
-          series[p].x.push_back(outcomes[p].cost);
-          series[p].y.push_back(outcomes[p].error);
-          points[p].push_back({settings, outcomes[p]});
-          add_row(csv, contest.panels[p], points[p].back());
-        }
-      }
-      for (std::size_t p = 0; p < panels.size(); ++p) panels[p].plot.series.push_back(series[p]);
-    }
-    for (Diagram& panel : panels) {  // in the legend each engine stands by itself
-      std::vector<Series>& s = panel.plot.series;
-      s = {s[0], s[2], s[4], s[1], s[3], s[5]};
-    }
-    for (std::size_t p = 0; p < panels.size(); ++p) {
-      if (c == 0) leave_room_for_legend(panels[p].plot);
-      std::vector<std::string> row{panels[p].title.substr(4) + ": " + contest.panels[p].error};
-      for (const double limit : {1e-2, 1e-3}) {
-        for (const bool box2d : {true, false}) {
-          row.push_back(cheapest_text(points[p], box2d, limit));
-        }
-        const double ratio = ratio_within(points[p], limit);
-        row.push_back(std::isnan(ratio) ? "" : rounded(ratio, 2));
-      }
-      costs.rows.push_back(row);
-      if (c == 0) {
-        orders = "Box2D " + rounded(order_in_step(points[p], true), 2) +
-                 "; lagrain, stiffest springs, " + rounded(order_in_step(points[p], false), 2);
-      }
-      diagrams.push_back(std::move(panels[p]));
+    const auto tell = [&](double share, const EngineSettings& settings) {
+      options.progress((static_cast<double>(c) + share) / static_cast<double>(all.size()),
+                       name_of(settings));
+    };
+    Judged judged = run_contest(all[c], tell, csv);
+    if (c == 0) orders = orders_text(judged.points.front());
+    for (std::size_t p = 0; p < judged.panels.size(); ++p) {
+      costs.rows.push_back(cost_row(all[c].panels[p], judged.points[p]));
+      diagrams.push_back(std::move(judged.panels[p]));
     }
   }
+  diagrams.front().plot.legend = Corner::top_right;  // for all of them
+  leave_room_for_legend(diagrams.front().plot);
   draw_diagrams(diagrams, 3, 165, options, "fig16", result);
   write_file(options.out / "fig16.csv", csv.text());
   result.downloads = {"fig16.csv"};
   const int phases = options.quick ? 4 : kPhases;
   result.tables = {costs, hits_table(phases, options), cradle_table(phases, options)};
-  result.caption =
-      "Error against processor time per simulated second, Box2D in orange, lagrain in blue; discs "
-      "of 1 m under 10 m/s^2, the units for which Box2D's tolerances are made. Box2D's step goes "
-      "from 1/60 s to 1/3840 s (columns: 1/960 s) along its curves, one for each number of "
-      "iterations for velocities and places; lagrain's stiffness goes along its own, one for the "
-      "largest step that it allows, and for a half and a quarter of it, in (a) a quarter and a "
-      "sixteenth. (a) Height of the first three apices after a fall of 5 m. (b, c) All six "
-      "velocities after an impact off the centre, e = 0.9, against rigid discs. (d) Velocity and "
-      "spin after 2 s. (e) All velocities. (f to i) Columns that were put down without overlap, "
-      "over a second after they had time to come to rest; (g, i) the contact whose mean force errs "
-      "most from the weight on it. In (a, b, c, e) errors are root mean "
-      "squares over " +
-      std::to_string(phases) +
-      " phases of the impact within a step: a single phase is luck. What to take: with few bodies "
-      "neither engine is the cheaper one throughout, the table says where which is. Box2D needs "
-      "one step for an impact and springs ten or more, but a step of few discs costs lagrain less. "
-      "Friction that sticks (c) is Box2D's best case, a row of discs (e) lagrain's. In (a) neither "
-      "does better than first order: Box2D because impacts fall between its steps, lagrain because "
-      "a dashpot sets in at once. On inclines (d) and in the cradle (e) Box2D errs by single "
-      "precision alone, which grows with the number of steps; springs err by their depth. Discs in "
-      "touch have no one rigid answer (last table): Box2D's all move off together, springs pass "
-      "nearly all on. At rest, overlap is to lagrain a load over a stiffness and to Box2D a "
-      "tolerance, which more iterations or shorter steps lower, at a price that "
-      "grows with the column. Forces of springs end at double precision, Box2D's at single. With "
-      "lagrain, choose the stiffness by the error, and the largest step: shorter ones help in (a) "
-      "and (e) alone.";
-  const Scene<2> unit = [] {
-    Scene<2> scene = game_scene();
-    scene.grains = {{.position = {0, 0}, .radius = kR}};
-    return scene;
-  }();
-  const Box2dWorld world(*make_run(unit, 1), {});
-  result.facts = {
-      {"Box2D", "the library calls itself " + box2d_version() + " (so does release 2.4.1)"},
-      {"Box2D's tolerance of length", rounded(100 * world.slop() / kR) + " % of a radius"},
-      {"Box2D's settings",
-       "no sleeping, collisions within a step seen (CCD), restitution threshold 0 for impacts and "
-       "its own 1 m/s for what rests"},
-      {"observed order in the step, (a)", orders},
-      {"lagrain's friction",
-       "viscous in (b, c), so that a contact that sticks keeps no slip; "
-       "elastic in (d)"},
-      {"Box2D 3 (commit 617d32ab; Debian has no package of it, not reproducible here)",
-       "friction and restitution together leave an error of 0.085 v in (b) at every step; column "
-       "of 50 with its defaults: overlap 0.028 r"}};
+  result.caption = caption_of(phases);
+  result.facts = facts_of(orders);
   return result;
 }
 
