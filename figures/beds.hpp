@@ -40,8 +40,11 @@ inline constexpr double kRestitution = 0.5;
 inline constexpr double kFriction = 0.5;
 inline constexpr double kTangentialDamping = 0.2;
 inline constexpr double kStepsPerContact = 25;
-inline constexpr int kShareFrom = 5000;         // grains: beds are made with all cores then
 inline constexpr double kLargestOverlap = 0.5;  // a hard impact is deep, and still measured
+/// Beds of more grains are made with all cores: a step is then long against waking them, as
+/// bench_threads shows. A wrong number costs time in making beds and nothing else, since any number
+/// of threads gives the same bits.
+inline constexpr int kShareFrom = 5000;
 
 /// A state to start from: what every contender is given. Wall 0 is the floor.
 template <int Dim>

@@ -105,7 +105,7 @@ class Oracle {
   }
 
   static const char* name() { return "oracle"; }
-  /// It knows the contacts, not the pairs within reach.
+  /// The oracle knows the contacts, not all pairs within reach.
   static bool keeps_promise() { return false; }
 
   /// @throws ContractError beyond the end of the recorded run

@@ -31,8 +31,9 @@ constexpr double kSample = 1.0 / 60;        // of what is observed on the way [s
 constexpr double kLast = 1;                 // of what is averaged at the end [s]
 constexpr double kMass = std::numbers::pi;  // of a disc of 1 m [kg]
 
-/// For what comes to rest: no search for collisions within a step, whose time grows with the square
-/// of the number of discs, and Box2D's own threshold, or every step of gravity would bounce.
+/// Box2D for what comes to rest. It does not search for collisions within a step: the time for that
+/// grows with the square of the number of discs. It keeps its own threshold for bounces, or every
+/// step of gravity would bounce.
 Box2dSettings box2d(int rate, int velocity_iterations = 8, int position_iterations = 3) {
   return {.time_step = 1.0 / rate,
           .velocity_iterations = velocity_iterations,
@@ -226,7 +227,7 @@ Scene<2> hopper(int count, int across, double gap) {
   return scene;
 }
 
-/// How it empties.
+/// How a hopper empties.
 struct Discharge {
   std::vector<double> time, fallen;  ///< [s], share of the discs [-]
   double rate = 0;                   ///< between 20 and 70 % [1/s]
@@ -346,8 +347,7 @@ class Report {
   bench::Csv csv_{"scene,engine,quantity,value"};
 };
 
-// ---- Panels
-// --------------------------------------------------------------------------------------
+// ---- Panels ------------------------------------------------------------------------------------
 
 /// The k-th curve of an engine.
 Series curve_of(const EngineSettings& settings, int k, const std::string& name) {
@@ -685,9 +685,8 @@ FigureResult draw_figure17(const FigureOptions& options) {
   result.facts.push_back({"discs that left through a wall", report.escaped()});
   result.facts.push_back(
       {"times",
-       "one thread, steps alone, each run once, of beds the median over samples of 1/60 s; "
-       "Box2D as the system packs it, lagrain with the widest vector instructions of this "
-       "processor"});
+       "one thread, steps alone, each run once, of beds the median over samples of 1/60 s; Box2D "
+       "as the system packs it, lagrain with the widest vector instructions of this processor"});
   result.facts.push_back(
       {"Box2D",
        "the library calls itself " + box2d_version() +
@@ -713,14 +712,13 @@ FigureResult draw_figure17(const FigureOptions& options) {
       "flatter heap. In a bed lagrain is the cheaper one at equal mean overlap, the more so the "
       "smaller it is, because Box2D is first order in its step and iterations buy little; with "
       "sizes 1 : 10 and 1 : 30 the two are closer. Springs resolve impacts, so discs overlap less "
-      "on the way; "
-      "but at an equal mean lagrain's largest overlap at rest is the larger one, and soft beds "
-      "ring for longer (force on the walls). Deep beds come to rest slowly in both. A heavy disc "
-      "on light ones takes both about the same time for the same overlap: Box2D needs a shorter "
-      "step or more iterations than its defaults, which let light discs be squeezed by half; "
-      "springs must be stiff for the heaviest disc with a step for the lightest, and still ring. "
-      "Fast discs pass through others in Box2D unless each is declared a bullet; lagrain needs "
-      "springs made for the speed, and with softer ones it stops with an error.";
+      "on the way; but at an equal mean lagrain's largest overlap at rest is the larger one, and "
+      "soft beds ring for longer (force on the walls). Deep beds come to rest slowly in both. A "
+      "heavy disc on light ones takes both about the same time for the same overlap: Box2D needs a "
+      "shorter step or more iterations than its defaults, which let light discs be squeezed by "
+      "half; springs must be stiff for the heaviest disc with a step for the lightest, and still "
+      "ring. Fast discs pass through others in Box2D unless each is declared a bullet; lagrain "
+      "needs springs made for the speed, and with softer ones it stops with an error.";
   return result;
 }
 

@@ -217,8 +217,8 @@ class Recorder {
 
   void keep(std::vector<Snapshot>& where) { where.push_back({run_.time(), run_.positions()}); }
 
-  /// The impact is foreseen some 0.03 s before the rock reaches the bed's
-  /// surface; the layers are those of that moment.
+  /// Foresees the impact some 0.03 s before the rock reaches the bed, and takes the layers of that
+  /// moment.
   void watch_for_impact() {
     const Columns<2>& x = run_.positions();
     double surface = 0;
@@ -426,12 +426,10 @@ FigureResult draw_figure5(const FigureOptions& options) {
       "(a) A rock of 1 t per metre of depth has fallen 5 m onto a bed of " +
       std::to_string(run->count() - 1) +
       " stones over a slab; colours are horizontal layers just before the impact. (b) Every edge "
-      "of "
-      "the triangulation that carries a contact, with a thickness proportional to its force, at "
-      "the "
-      "largest force on the slab; contacts with the walls likewise. The strongest 0.1 % are drawn "
-      "no "
-      "thicker than the next. (c) Strip in time. (d) Force on the slab. (e) Energy ledger.";
+      "of the triangulation that carries a contact, with a thickness proportional to its force, at "
+      "the largest force on the slab; contacts with the walls likewise. The strongest 0.1 % are "
+      "drawn no thicker than the next. (c) Strip in time. (d) Force on the slab. (e) Energy "
+      "ledger.";
   result.comparisons = {
       {"grains", "approx. 20,000", std::to_string(run->count() - 1) + " and the rock"},
       {"overlap (the paper: in practice, of the size of the grains)", "about 1 %",

@@ -56,7 +56,7 @@ struct Found {
 };
 /// @param weights N [m^2]
 Found find_contacts(const Discs& discs, const Eigen::VectorXd& weights);
-/// With weights r^2.
+/// The same with weights r^2, as the contact detection has them.
 Found find_contacts(const Discs& discs);
 
 /// Discs that have come to rest in an open box, 0 <= x <= width, y >= 0.

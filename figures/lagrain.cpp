@@ -213,7 +213,7 @@ int main(int argc, char** argv) {
 
   FigureArguments report;
   CLI::App* report_app =
-      app.add_subcommand("report", "Measure speed and accuracy on this machine, beside others");
+      app.add_subcommand("report", "Draw the report's figures, then measure speed beside others");
   report_app->add_option("--out", report.out, "folder to write")->capture_default_str();
   report_app->add_flag("--quick", report.quick, "small scenes and few steps");
 

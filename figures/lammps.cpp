@@ -294,8 +294,8 @@ LammpsRun<Dim>::LammpsRun(const fs::path& program, fs::path folder, const Bed<Di
   posix_spawn_file_actions_init(&actions);
   for (const int stream : {0, 1}) posix_spawn_file_actions_adddup2(&actions, line[1], stream);
   const std::string command =
-      "cd \"$1\" && OMP_NUM_THREADS=1 exec \"$0\" -in in.lammps -log log.lammps -screen none "
-      "-var pause 'shell echo && read line' 2>/dev/null";
+      "cd \"$1\" && OMP_NUM_THREADS=1 exec \"$0\" -in in.lammps -log log.lammps -screen none -var "
+      "pause 'shell echo && read line' 2>/dev/null";
   std::vector<std::string> words{"sh", "-c", command, program.string(), folder_.string()};
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());

@@ -1,6 +1,6 @@
 #pragma once
 /// @file
-/// The same bed in LAMMPS: its data file and its input, a run of the program, and what it reports.
+/// A bed in LAMMPS: its data file and its input, a run of the program, and what it reports.
 ///
 /// The law is pair_style gran/hooke/history with walls of the same style. Two things differ from
 /// ours: its normal dashpot may attract at the end of a contact, and its damping grows with the
@@ -83,7 +83,7 @@ class LammpsRun {
   LammpsReport<Dim> finish();
 
  private:
-  /// Of a file, closed with its owner.
+  /// A file descriptor that is closed with its owner.
   struct Descriptor {
     int number = -1;
     ~Descriptor();

@@ -102,7 +102,7 @@ TrialSet<Dim> packing(int count) {
   return set;
 }
 
-/// The same so far from the origin that a coordinate loses 20 of its bits.
+/// A set so far from the origin that its coordinates lose 20 of their bits.
 template <int Dim>
 TrialSet<Dim> far_away(const TrialSet<Dim>& near) {
   TrialSet<Dim> set{near.name + ", far away", {}};
@@ -129,7 +129,7 @@ TrialSet<Dim> lattice(const std::string& name, int count, F&& place) {
   return set;
 }
 
-/// The same, every coordinate off by up to 10^-6 of the pitch.
+/// A lattice with every coordinate off by up to 10^-6 of the pitch.
 template <int Dim>
 TrialSet<Dim> disturbed(const TrialSet<Dim>& exact, Random& random) {
   constexpr double kMost = 1e-6 * kPitch;

@@ -239,25 +239,19 @@ std::string phase_table(const SpeedResults& results) {
 
 constexpr const char* kHowToRead =
     "Every number on this page comes from one run of the program on the machine named below. On "
-    "each "
-    "scene all contenders get the same state and go through the same steps in several rounds, a "
-    "twelfth of a round each in turn, because a machine's moods last a second; times are medians "
+    "each scene all contenders get the same state and go through the same steps in several rounds, "
+    "a twelfth of a round each in turn, because a machine's moods last a second; times are medians "
     "over the rounds of the processor time of one core, ratios are medians of those of each round, "
     "the spread is the largest time less the smallest, and the errors are those of the first "
-    "round. The law is the same everywhere: a linear spring and "
-    "dashpot, "
-    "friction with a tangential spring, coefficient 0.5, frictional walls. The oracle is handed "
-    "exactly "
-    "the pairs that will touch, for nothing: no way to find contacts can be faster. A contender "
-    "that "
-    "is astray by nothing has computed the same bits as the triangulation; where grains collide, "
+    "round. The law is the same everywhere: a linear spring and dashpot, friction with a "
+    "tangential spring, coefficient 0.5, frictional walls. The oracle is handed exactly the pairs "
+    "that will touch, for nothing: no way to find contacts can be faster. A contender that is "
+    "astray by nothing has computed the same bits as the triangulation; where grains collide, "
     "LAMMPS soon follows a path of its own, as any other rounding does. LAMMPS runs "
-    "gran/hooke/history "
-    "with the same stiffness, friction, time step and walls, its dashpots set alike for grains of "
-    "median mass, a skin of 0.2 smallest radii and a check for rebuilding at every step; \"multi\" "
-    "sorts neighbours by atom type, one for the small and one for the large. Spheres of one size "
-    "are "
-    "the paper's boxes and copies of them side by side.";
+    "gran/hooke/history with the same stiffness, friction, time step and walls, its dashpots set "
+    "alike for grains of median mass, a skin of 0.2 smallest radii and a check for rebuilding at "
+    "every step; \"multi\" sorts neighbours by atom type, one for the small and one for the large. "
+    "Spheres of one size are the paper's boxes and copies of them side by side.";
 
 #ifdef LAGRAIN_WITH_RENDER
 

@@ -46,7 +46,7 @@ struct Descent {
   double spin;      ///< [rad/s], of rolling downhill positive
 };
 
-/// It rolls while tan(angle) <= 3 mu, else it slides.
+/// The descent of a disc that starts at rest: it rolls while tan(angle) <= 3 mu, else it slides.
 /// @param angle [rad] @param gravity [m/s^2]
 inline Descent descent(double angle, double friction, double gravity, double radius, double time) {
   const double drive = gravity * std::sin(angle);

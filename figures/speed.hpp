@@ -17,8 +17,8 @@ namespace lagrain::bench {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// What a run is worth; kUnknown where a contender does not tell. Overlaps, contacts and the load
-/// are computed from the places at the end by one function for all contenders.
+/// How good a run was; kUnknown where a contender does not tell. One function for all contenders
+/// computes overlaps, contacts and the load from the places at the end.
 struct RunErrors {
   double missed = kUnknown;              ///< contacts not in the near list, over all audits
   double audited = kUnknown;             ///< contacts looked for
@@ -51,7 +51,8 @@ struct Contender {
   double spread() const;  ///< largest less smallest, of the median [-]
 };
 
-/// Of the times of two contenders that took turns: the median of what it is in each round.
+/// The time of one contender over that of another with whom it took turns: the median over the
+/// rounds.
 double ratio(const Contender& a, const Contender& b);
 
 /// All contenders on one scene.

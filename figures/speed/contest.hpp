@@ -13,13 +13,12 @@
 
 namespace lagrain::bench {
 
-/// One scene and all who take part.
+/// One scene and all who take part in it.
 template <int Dim>
 struct Match {
   struct Entry {
     std::string name;
-    /// Takes the steps before those that are measured. Reads this match, which stays in its
-    /// place.
+    /// Takes the steps before those that are measured. It reads the match, which does not move.
     std::function<std::unique_ptr<TurnTaker<Dim>>(bool careful)> start;
     std::unique_ptr<TurnTaker<Dim>> running;
     std::vector<std::vector<Phase>> phases;  // by round
