@@ -22,7 +22,7 @@ constexpr double kRadius = 0.02;  // of the largest grain [m]
 
 }  // namespace
 
-/// By this name callgrind knows what to count.
+/// Callgrind counts what happens within this function, which it knows by its name.
 template <class Simulation>
 [[gnu::noinline]] void take_steps(Simulation& simulation) {
   simulation.step(kSteps);

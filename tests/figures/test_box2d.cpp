@@ -47,7 +47,7 @@ void run_for(Engine& engine, int steps) {
   for (int k = 0; k < steps; ++k) engine.step();
 }
 
-/// For what rests: Box2D's own threshold.
+/// The settings for what rests: with Box2D's own threshold, below which nothing bounces.
 constexpr Box2dSettings kResting{.bounce_above = 1};
 
 Vec<2> momentum(const std::array<RigidDisc, 2>& discs) {
