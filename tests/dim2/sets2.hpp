@@ -125,8 +125,8 @@ inline std::vector<Triple> triangles(const Triangulation<2>& t) {
   return list;
 }
 
-/// Triangle for triangle, edge for edge, hidden site for hidden site.
-inline bool same(const Triangulation<2>& a, const Triangulation<2>& b) {
+template <>
+inline bool same<2>(const Triangulation<2>& a, const Triangulation<2>& b) {
   return a.dimension() == b.dimension() && triangles(a) == triangles(b) && edges(a) == edges(b) &&
          hidden(a) == hidden(b);
 }

@@ -1,16 +1,13 @@
 #include <lagrain/triangulation2.hpp>
 
-#include <lagrain/check.hpp>
-
 #include "dim2/sets2.hpp"
 #include "support/cases.hpp"
+#include "support/triangulation_laws.hpp"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <limits>
 #include <numbers>
 
 using namespace lagrain;
@@ -19,44 +16,19 @@ using test::Edge;
 TEST_SUITE("triangulation2") {
   TEST_CASE("sites inserted one by one into nothing give the triangulation that build gives") {
     for (int seed = 0; seed < test::cases(10, 300); ++seed) {
+      CAPTURE(seed);
       Random random(static_cast<std::uint64_t>(seed));
-      auto kinds = test::all_kinds(random);
-      kinds.push_back(test::collinear(random, 12));
-      for (const test::Sites& s : kinds) {
-        CAPTURE(seed);
-        CAPTURE(s.name);
-        Triangulation<2> t;
-
-        for (int i = 0; i < s.size(); ++i) t.insert(i, s.x.col(i), s.w[i]);
-
-        CHECK_AS_BUILT(t, s);
-      }
+      for (const auto& s : test::all_kinds(random)) test::check_insertions(s);
+      test::check_insertions(test::collinear(random, 12));
     }
   }
 
   TEST_CASE("a move gives the triangulation that build gives, and moving back the former one") {
     for (int seed = 0; seed < test::cases(10, 500); ++seed) {
+      CAPTURE(seed);
       Random random(static_cast<std::uint64_t>(seed));
-      for (const test::Sites& s : test::all_kinds(random)) {
-        auto t = test::built(s);
-        for (const double distance : {0.01, 0.05, 0.17, 1.0}) {
-          for (const double fraction : {0.0, 0.02, 0.3, 1.0}) {
-            CAPTURE(seed);
-            CAPTURE(s.name);
-            CAPTURE(distance);
-            CAPTURE(fraction);
-            auto ids = test::some_ids(random, s.size(), fraction);
-            if (ids.empty()) ids = {random.below(s.size())};
-            const test::Sites there = test::displaced(s, ids, distance * s.r, random);
-
-            UpdateReport report = t.move(ids, there.x, there.w);
-            CHECK_AS_BUILT(t, there);
-            report += t.move(ids, s.x, s.w);
-            CHECK_AS_BUILT(t, s);
-
-            if (distance < 1) CHECK(report.rebuilds == 0);
-          }
-        }
+      for (const auto& s : test::all_kinds(random)) {
+        CHECK(test::check_moves(s, random).rebuilds == 0);
       }
     }
   }
@@ -65,56 +37,17 @@ TEST_SUITE("triangulation2") {
     for (int seed = 0; seed < test::cases(20, 500); ++seed) {
       CAPTURE(seed);
       Random random(static_cast<std::uint64_t>(seed));
-      const test::Sites s = test::jittered(random, 10);
-      test::Sites other = s;
-      const auto ids = test::some_ids(random, s.size(), 0.2);
-      for (const int i : ids) other.w[i] = random.uniform(-1, 40);
-      auto t = test::built(s);
-
-      t.move(ids, s.x, other.w);
-      CHECK_AS_BUILT(t, other);
-      CHECK(!t.hidden().empty());
-      const UpdateReport report = t.move(ids, s.x, s.w);
-
-      CHECK_AS_BUILT(t, s);
-      CHECK(t.hidden().empty());
-      CHECK(report.reinserted > 0);
-      CHECK(report.rebuilds == 0);
+      const auto s = test::jittered(random, 10);
+      CHECK(test::check_weights(s, 0.2, random).rebuilds == 0);
     }
   }
 
   TEST_CASE(
       "any sequence of moves, insertions and removals ends in the triangulation of what is there") {
     for (int seed = 0; seed < test::cases(10, 500); ++seed) {
+      CAPTURE(seed);
       Random random(static_cast<std::uint64_t>(seed));
-      for (const test::Sites& start : test::all_kinds(random)) {
-        test::Sites s = start;
-        std::vector<bool> present(static_cast<std::size_t>(s.size()), true);
-        auto t = test::built(s);
-        for (int step = 0; step < 40; ++step) {
-          CAPTURE(seed);
-          CAPTURE(s.name);
-          CAPTURE(step);
-          const int i = random.below(s.size());
-          const auto k = static_cast<std::size_t>(i);
-          if (random.uniform() < 0.3) {
-            s.x.col(i) += 5 * s.r * Vec<2>(random.uniform(-1, 1), random.uniform(-1, 1));
-            if (present[k]) t.move(std::vector<int>{i, i}, s.x, s.w);
-          } else if (present[k]) {
-            t.remove(i);
-            present[k] = false;
-          } else {
-            t.insert(i, s.x.col(i), s.w[i]);
-            present[k] = true;
-          }
-          CHECK(test::audited(t) == "");
-        }
-        for (int i = 0; i < s.size(); ++i) {
-          CHECK(t.contains(i) == present[static_cast<std::size_t>(i)]);
-          if (!t.contains(i)) t.insert(i, s.x.col(i), s.w[i]);
-        }
-        CHECK_AS_BUILT(t, s);
-      }
+      for (const auto& s : test::all_kinds(random)) test::check_sequence(s, random);
     }
   }
 
@@ -251,69 +184,17 @@ TEST_SUITE("triangulation2") {
 
   TEST_CASE("every neighbour relation is an edge, seen from both ends") {
     Random random(2);
-    for (const test::Sites& s : test::all_kinds(random)) {
-      const auto t = test::built(s);
-      std::vector<Edge> seen;
-
-      for (int i = 0; i < s.size(); ++i) {
-        t.for_each_neighbour(i, [&](int j) { seen.emplace_back(std::min(i, j), std::max(i, j)); });
-      }
-
-      std::sort(seen.begin(), seen.end());
-      std::vector<Edge> twice;
-      for (const Edge& edge : test::edges(t)) twice.insert(twice.end(), 2, edge);
-      CHECK(seen == twice);
-    }
+    for (const auto& s : test::all_kinds(random)) test::check_neighbours(s);
   }
 
   TEST_CASE("an update tells which edges it made") {
     Random random(3);
-    for (test::Sites s : test::all_kinds(random)) {
-      CAPTURE(s.name);
-      auto t = test::built(s);
-      for (const double distance : {0.05, 1.0}) {
-        for (const double fraction : {0.0, 0.05, 1.0}) {
-          auto ids = test::some_ids(random, s.size(), fraction);
-          if (ids.empty()) ids = {random.below(s.size())};
-          s = test::displaced(s, ids, distance * s.r, random);
-          const auto before = test::edges(t);
-
-          t.move(ids, s.x, s.w);
-
-          std::vector<Edge> told;
-          t.for_each_new_edge([&](int i, int j) { told.emplace_back(i, j); });
-          std::sort(told.begin(), told.end());
-          const auto after = test::edges(t);
-          std::vector<Edge> made;
-          std::set_difference(after.begin(), after.end(), before.begin(), before.end(),
-                              std::back_inserter(made));
-          CHECK(std::includes(told.begin(), told.end(), made.begin(), made.end()));
-        }
-      }
-    }
+    for (const auto& s : test::all_kinds(random)) test::check_new_edges(s, random);
   }
 
   TEST_CASE("a broken contract throws and changes nothing") {
     Random random(1);
-    const test::Sites s = test::jittered(random, 4);
-    auto t = test::built(s);
-    test::Sites bad = s;
-    bad.x(0, 3) = std::numeric_limits<double>::quiet_NaN();
-    bad.w[5] = std::numeric_limits<double>::infinity();
-
-    CHECK_THROWS_AS(t.build(s.x, Eigen::VectorXd(3)), ContractError);
-    CHECK_THROWS_AS(t.build(bad.x, s.w), ContractError);
-    CHECK_THROWS_AS(t.move(std::vector<int>{1, 3}, bad.x, bad.w), ContractError);
-    CHECK_THROWS_AS(t.move(std::vector<int>{1, 5}, bad.x, bad.w), ContractError);
-    CHECK_THROWS_AS(t.move(std::vector<int>{1, 99}, s.x, s.w), ContractError);
-    CHECK_THROWS_AS(t.move(std::vector<int>{1}, Columns<2>(2, 3), Eigen::VectorXd(3)),
-                    ContractError);
-    CHECK_THROWS_AS(t.insert(2, Vec<2>(0, 0), 1), ContractError);
-    CHECK_THROWS_AS(t.insert(17, Vec<2>(0, 0), 1), ContractError);
-    CHECK_THROWS_AS(t.remove(16), ContractError);
-
-    t.move(std::vector<int>{1, 4}, bad.x, bad.w);  // columns that are not moved are not read
-    CHECK_AS_BUILT(t, s);
+    test::check_contracts(test::jittered(random, 4));
   }
 }
 

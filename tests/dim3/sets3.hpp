@@ -30,8 +30,8 @@ inline std::vector<Four> tetrahedra(const Triangulation<3>& t) {
   return list;
 }
 
-/// Tetrahedron for tetrahedron, edge for edge, hidden site for hidden site.
-inline bool same(const Triangulation<3>& a, const Triangulation<3>& b) {
+template <>
+inline bool same<3>(const Triangulation<3>& a, const Triangulation<3>& b) {
   return a.dimension() == b.dimension() && tetrahedra(a) == tetrahedra(b) && edges(a) == edges(b) &&
          hidden(a) == hidden(b);
 }
@@ -62,28 +62,27 @@ inline Sites jittered(Random& random, int side, double jitter = 0.5) {
   return make_sites("disjoint", rows, 0.5);
 }
 
-/// Uniform centres, one in each unit of volume, of small and nearly equal spheres.
-inline Sites uniform(Random& random, int count) {
+/// Uniform centres, one in each unit of volume, and uniform radii.
+inline Sites at_random(const std::string& name, Random& random, int count, double least,
+                       double most, double typical) {
   test::Rows<3> rows;
   const double side = std::cbrt(static_cast<double>(count));
   for (int i = 0; i < count; ++i) {
-    const double r = random.uniform(0.15, 0.25);
+    const double r = random.uniform(least, most);
     rows.push_back(
         {random.uniform(0, side), random.uniform(0, side), random.uniform(0, side), r * r});
   }
-  return make_sites("random", rows, 0.25);
+  return make_sites(name, rows, typical);
 }
 
-/// Uniform centres with radii so large that many sites are hidden.
+/// Small and nearly equal spheres at random.
+inline Sites uniform(Random& random, int count) {
+  return at_random("random", random, count, 0.15, 0.25, 0.25);
+}
+
+/// Spheres at random that are so large that many sites are hidden.
 inline Sites overlapping(Random& random, int count) {
-  test::Rows<3> rows;
-  const double side = std::cbrt(static_cast<double>(count));
-  for (int i = 0; i < count; ++i) {
-    const double r = random.uniform(0.3, 2.0);
-    rows.push_back(
-        {random.uniform(0, side), random.uniform(0, side), random.uniform(0, side), r * r});
-  }
-  return make_sites("overlapping", rows);
+  return at_random("overlapping", random, count, 0.3, 2.0, 1);
 }
 
 /// Radii from 1/ratio to 1, as many in each octave, placed at random where they overlap no other by

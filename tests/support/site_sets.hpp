@@ -145,6 +145,10 @@ int missed_contacts(const Triangulation<Dim>& t, const SiteSet<Dim>& s) {
   return missed;
 }
 
+/// Whether two triangulations agree: simplex for simplex, edge for edge, hidden site for hidden site.
+template <int Dim>
+bool same(const Triangulation<Dim>& a, const Triangulation<Dim>& b);
+
 /// T equals a triangulation of the same sites built from nothing, and its audit is empty.
 #define CHECK_AS_BUILT(t, sites)              \
   do {                                        \
