@@ -5,6 +5,7 @@
 
 #include "figure.hpp"
 
+#include <lagrain/compiled_kernels.hpp>
 #include <lagrain/cundall_strack.hpp>
 #include <lagrain/grains.hpp>
 #include <lagrain/hooke.hpp>
@@ -105,7 +106,9 @@ template <int Dim>
 void advance(Bed<Dim>& bed, int steps, const StopCheck& check_stop) {
   auto sim = simulate<Dim, TriangulationNeighbourhood<Dim>>(bed);
   // The same bits with any number of threads, and only runs in turns are measured.
-  if (bed.count() > kShareFrom) sim.use_threads(std::max(1U, std::thread::hardware_concurrency()));
+  if (bed.count() > kShareFrom) {
+    sim.use_threads(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+  }
   constexpr int kBetweenChecks = 100;
   for (int s = 0; s < steps; s += kBetweenChecks) {
     sim.step(std::min(kBetweenChecks, steps - s));

@@ -586,7 +586,7 @@ std::string caption_of(int phases) {
 std::vector<Fact> facts_of(const std::string& orders) {
   Scene<2> unit = game_scene();
   unit.grains = {{.position = {0, 0}, .radius = kR}};
-  const Box2dWorld world(*make_scene_run(unit, 1), {});
+  const Box2dWorld world(*make_run(unit, 1), {});
   return {
       {"Box2D", "the library calls itself " + box2d_version() + " (so does release 2.4.1)"},
       {"Box2D's tolerance of length", rounded(100 * world.slop() / kR) + " % of a radius"},

@@ -5,7 +5,6 @@
 
 #include "figure.hpp"
 #include "geometry_drawing.hpp"
-#include "scene_run.hpp"
 
 #include <lagrain/output.hpp>
 #include <lagrain/paint.hpp>
@@ -43,7 +42,8 @@ Scene3 seen_from_below(const Run<3>& run, const Columns<3>& x, int subframes) {
   const double width = 2 * run.scene().grains[0].position.x();  // the large one is in the middle
   const Box3 box{Vec<3>::Zero(), {width, width, 0.6 * width}};
   add_edges(scene, box);
-  scene.camera = look({box.low, {width, width, 0.01 * width}}, {0, 0, 1}, {0, 1, 0}, 1, 0.35, 0.03);
+  scene.camera =
+      camera_framing({box.low, {width, width, 0.01 * width}}, {0, 0, 1}, {0, 1, 0}, 1, 0.35, 0.03);
   scene.lights = over_the_shoulder(scene.camera);
   scene.subframes = subframes;
   return scene;
@@ -80,7 +80,7 @@ Image film_frame(const Run<3>& run, bool quick) {
 Figure8 make_figure8(const FigureOptions& options) {
   Figure8 figure;
   figure.file = options.scenes / "around_a_large_grain.toml";
-  figure.run = make_scene_run(read_scene<3>(figure.file));
+  figure.run = make_run(read_scene<3>(figure.file));
   const Run<3>& run = *figure.run;
   VideoWriter video(options.out / "fig8.mp4", 25);
   std::string track = "time[s],large_grain_bottom[m]\n";

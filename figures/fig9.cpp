@@ -6,7 +6,6 @@
 // figures 6 and 7 on one axis with the closest packing's.
 
 #include "packing.hpp"
-#include "scene_run.hpp"
 
 #include <lagrain/output.hpp>
 #include <lagrain/paint.hpp>
@@ -75,7 +74,7 @@ struct Closest {
 
 Closest run_closest(const FigureOptions& options) {
   const int across = options.quick ? 7 : 9, layers = options.quick ? 8 : 12;
-  const std::unique_ptr<Run<3>> run = make_scene_run(closest_packing(across, layers));
+  const std::unique_ptr<Run<3>> run = make_run(closest_packing(across, layers));
   const Columns<3> before = run->positions();
   Closest result;
   Eigen::AlignedBox3d box(Vec<3>::Zero(), Vec<3>::Constant(2 * kRadius * across));

@@ -5,7 +5,6 @@
 
 #include "figure.hpp"
 #include "measure.hpp"
-#include "scene_run.hpp"
 
 #include <lagrain/run.hpp>
 
@@ -60,7 +59,7 @@ Trial<Dim> run_trial(Scene<Dim> scene, double step, const FigureOptions& options
   double all = 0;
   do {
     options.check_stop();
-    trial.run = make_scene_run(scene, 1);
+    trial.run = make_run(scene, 1);
     const double start = bench::processor_seconds();
     while (!trial.run->finished()) trial.run->step();
     const double spent = bench::processor_seconds() - start;

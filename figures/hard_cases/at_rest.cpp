@@ -45,7 +45,7 @@ namespace {
 template <int Dim>
 CrystalAtRest rest(Crystal crystal, const StopCheck& check_stop) {
   const Scene<Dim> scene = crystal_scene<Dim>(crystal, Vec<Dim>::Zero());
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
   const Columns<Dim> before = run->positions();
   CrystalAtRest result;
   watch(*run, kCrystalSteps, result, check_stop);
@@ -91,7 +91,7 @@ Tower tower(int height, std::int64_t steps, const StopCheck& check_stop) {
   for (int k = 0; k < height; ++k) put<2>(scene, {0, (2 * k + 1) * kRadius});
   scene.walls.push_back(Wall<2>::half_space("floor", {0, 0}, {0, 1}));
   step_widely(scene);
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
 
   Tower result;
   const auto n = static_cast<std::size_t>(height);
@@ -148,7 +148,7 @@ HeavyOnLight heavy_on_light(const StopCheck& check_stop) {
   scene.grains.back().material = 1;
   add_tub<Dim>(scene, Vec<Dim>::Zero(), 4 * kRadius);
   step_widely(scene);
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
 
   HeavyOnLight result;
   watch(*run, kSteps, result, check_stop);
@@ -199,7 +199,7 @@ GiantAndDust giant_and_dust(const StopCheck& check_stop) {
   dust.high = {kHigh, kHigh * kHigh / 2};
   dust.arrangement = Arrangement::random;
   scene.fills.push_back(dust);
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
   const Vec<2> before = run->positions().col(0);
 
   GiantAndDust result;
@@ -233,7 +233,7 @@ Wedge tiny_disc_between_giants(const StopCheck& check_stop) {
   put<2>(scene, {2 * kGiant, foot + std::sqrt(kTiny * (2 * kGiant + kTiny))}, kTiny);
   add_tub<2>(scene, {0, 0}, 4 * kGiant);
   step_widely(scene);
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
 
   Wedge result;
   watch(*run, std::llround(kSeconds / run->time_step()), result, check_stop);

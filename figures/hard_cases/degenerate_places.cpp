@@ -29,7 +29,7 @@ Row row_of_grains(bool slanted, const StopCheck& check_stop) {
   const double mass = kDensity * grain_volume<Dim>(kRadius);
   const double speed = kDeepest * kRadius * std::sqrt(2 * kStiffness / mass);
   scene.grains[0].velocity = speed * along;
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
 
   Row result;
   // The way of the impulse, with the time that it spends in contacts, and once more the gap.
@@ -59,18 +59,18 @@ OnePlace all_in_one_place(const StopCheck& check_stop) {
   scene.time_step.fraction_of_contact = 1.0 / 100;
   for (int k = 0; k < result.grains; ++k) put<Dim>(scene, Vec<Dim>::Ones());
   try {
-    make_scene_run(scene, 1);
+    make_run(scene, 1);
   } catch (const SceneError& error) {
     result.refused = error.what();
   }
   scene.largest_initial_overlap = 2;  // of the radius: all there is
   try {
-    make_scene_run(scene, 1);
+    make_run(scene, 1);
   } catch (const SimulationError& error) {
     result.stopped = error.what();
   }
   scene.largest_overlap = 2;
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
   result.pairs = static_cast<int>(run->near_pairs().size());
   watch(*run, kSteps, result.free, check_stop, {}, 1);
   const Columns<Dim>& v = run->velocities();
@@ -91,7 +91,7 @@ FarAway far_from_origin(double distance, const StopCheck& check_stop) {
   FarAway result;
   double step = 0;
   const auto settled = [&](const Vec<2>& corner) {
-    const auto run = make_scene_run(crystal_scene<2>(Crystal::hexagonal, corner), 1);
+    const auto run = make_run(crystal_scene<2>(Crystal::hexagonal, corner), 1);
     watch(*run, kCrystalSteps, result, check_stop);
     result.last_bit = last_bit_of(run->positions().cwiseAbs().maxCoeff()) / kRadius;
     step = run->time_step();
@@ -143,7 +143,7 @@ Scales nine_decades_of_radii(std::int64_t steps, const StopCheck& check_stop) {
     const Vec<2> place = Vec<2>(0, -kGiant) + (kGiant + radii[k]) * up;
     put<2>(scene, place, radii[k], -speed * up);
   }
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
 
   Scales result;
   watch(*run, steps, result, check_stop);

@@ -56,7 +56,7 @@ Pile pile(FrictionModel friction, std::int64_t steps, const StopCheck& check_sto
   scene.fills.push_back(column);
   scene.walls.push_back(Wall<2>::half_space("left", {0, 0}, {1, 0}));
   scene.walls.push_back(Wall<2>::half_space("right", {2 * middle, 0}, {-1, 0}));
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
 
   Pile result;
   result.grains = run->count() - kPinned;
@@ -104,7 +104,7 @@ Gas elastic_gas(std::int64_t grain_steps, const StopCheck& check_stop) {
   scene.fills.push_back(gas);
   add_tub<2>(scene, {0, 0}, kSide);
   scene.walls.push_back(Wall<2>::half_space("lid", {0, kSide}, {0, -1}));
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
 
   Gas result;
   result.grains = kGrains;

@@ -88,7 +88,7 @@ NotANumber not_a_number(const std::filesystem::path& folder, const StopCheck& ch
   Scene<2> spoilt = scene;
   spoilt.grains[5].velocity.y() = std::numeric_limits<double>::quiet_NaN();
   try {
-    make_scene_run(spoilt, 1);
+    make_run(spoilt, 1);
   } catch (const std::exception& error) {
     result.in_program = error.what();
   }
@@ -98,13 +98,13 @@ NotANumber not_a_number(const std::filesystem::path& folder, const StopCheck& ch
   fast.duration = 1;
   fast.audit = true;
   {
-    const auto run = make_scene_run(fast, 1);
+    const auto run = make_run(fast, 1);
     result.last_is_sound = record_until_it_stops(*run, folder, result.overflow, check_stop,
                                                  [](const Vec<2>& x) { return x.allFinite(); });
   }
 
   fast.grains[5].velocity.y() = 1e150;
-  const auto run = make_scene_run(fast, 1);
+  const auto run = make_run(fast, 1);
   watch(*run, 1000, result.huge, check_stop);
   return result;
 }
@@ -124,15 +124,15 @@ PushedThrough pushed_through_walls(const StopCheck& check_stop) {
   const double speed = 3 * scene.largest_overlap * kRadius * std::sqrt(kStiffness / mass);
   crushed.walls.push_back(Wall<2>::half_space("lid", {0, 12 * kRadius}, {0, -1}));
   crushed.walls.back().motion = Steady<2>{{0, -speed}};
-  watch(*make_scene_run(crushed, 1), 10000, result.lid, check_stop);
+  watch(*make_run(crushed, 1), 10000, result.lid, check_stop);
 
   // The lowest discs would sink in by their radius.
   PairLaw soft{0, 1, scene.law};
   soft.law.stiffness = 5 * weight<2>(kRadius) / kRadius;
   scene.materials.push_back({"mud", 0});
   scene.pairs.push_back(soft);
-  scene.walls[0].kind = 1;
-  watch(*make_scene_run(scene, 1), 10000, result.soft_floor, check_stop);
+  scene.walls[0].material = 1;
+  watch(*make_run(scene, 1), 10000, result.soft_floor, check_stop);
   return result;
 }
 
@@ -155,7 +155,7 @@ Shrinking shrinking_box(const std::filesystem::path& folder, const StopCheck& ch
   }
   scene.duration = kSide / (2 * kSpeed);  // nothing is left of the box then
   scene.audit = true;
-  const auto run = make_scene_run(scene, 1);
+  const auto run = make_run(scene, 1);
 
   Shrinking result;
   result.grains = run->count();

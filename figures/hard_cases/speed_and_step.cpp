@@ -16,13 +16,13 @@ FastGrain fast_grain(double way, int shots, const StopCheck& check_stop) {
   Scene<2> scene = stone<2>("fast grain", 1e7, 1);
   put<2>(scene, {0, 0});
   scene.grains[0].pinned = true;
-  const double step = make_scene_run(scene, 1)->time_step();
+  const double step = make_run(scene, 1)->time_step();
   for (int shot = 0; shot < shots; ++shot) {
     Scene<2> one = scene;
     // The first contact lies anywhere in a step.
     const double start = -2 - way * (shot + 0.5) / shots;
     put<2>(one, {start * kRadius, 0}, kRadius, {way * kRadius / step, 0});
-    const auto run = make_scene_run(one, 1);
+    const auto run = make_run(one, 1);
     // Long enough for a bounce (a contact lasts 25 steps or, against a pinned grain, 36), or to
     // come out.
     watch(*run, 60 + static_cast<std::int64_t>(5 / way), result, check_stop, {}, 1);
@@ -64,7 +64,7 @@ std::string refusal_of_step(double safe_steps) {
   scene.law.impact_speed = 1;
   scene.time_step.fraction_of_contact = safe_steps * kLargestContactFraction;
   try {
-    make_scene_run(scene, 1);
+    make_run(scene, 1);
   } catch (const SceneError& error) {
     return error.what();
   }
@@ -81,13 +81,13 @@ StepSize collisions_at_step(double safe_steps, const StopCheck& check_stop) {
   // The contact time goes with the speed to the power -1/5.
   scene.law.impact_speed = kSpeed * std::pow(safe_steps, -5);
   scene.time_step.fraction_of_contact = kLargestContactFraction;
-  const double way = kSpeed * make_scene_run(scene, 1)->time_step();  // of both together
+  const double way = kSpeed * make_run(scene, 1)->time_step();  // of both together
   for (int phase = 0; phase < kPhases; ++phase) {
     Scene<2> one = scene;
     const double gap = way * (phase + 0.5) / kPhases;
     one.grains[0].position.x() = -kRadius - gap / 2;
     one.grains[1].position.x() = kRadius + gap / 2;
-    const auto run = make_scene_run(one, 1);
+    const auto run = make_run(one, 1);
     double deepest = 0;
     ContactAudit<2> audit;
     // Until they part again.

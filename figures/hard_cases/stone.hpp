@@ -4,7 +4,6 @@
 
 #include "hard_cases.hpp"
 
-#include "scene_run.hpp"
 
 #include <cmath>
 #include <limits>
@@ -52,7 +51,7 @@ void fall(Scene<Dim>& scene) {
 template <int Dim>
 void step_widely(Scene<Dim>& scene) {
   scene.time_step.fraction_of_contact = 1e-3;
-  scene.time_step.seconds = make_scene_run(scene, 1)->time_scales().safe_step;
+  scene.time_step.seconds = make_run(scene, 1)->time_scales().safe_step;
 }
 
 /// Adds a grain of the first material.
