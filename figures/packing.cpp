@@ -1,6 +1,5 @@
 #include "packing.hpp"
 
-
 #include <lagrain/laguerre3.hpp>
 #include <lagrain/output.hpp>
 #include <lagrain/paint.hpp>

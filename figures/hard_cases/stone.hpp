@@ -4,6 +4,7 @@
 
 #include "hard_cases.hpp"
 
+#include <lagrain/run.hpp>
 
 #include <cmath>
 #include <limits>
