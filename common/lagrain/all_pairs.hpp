@@ -12,8 +12,9 @@ namespace lagrain {
 template <int Dim>
 class AllPairs {
  public:
-  static const char* name() { return "all pairs"; }
+  static const char* name() { return "all pairs"; }  ///< for people
 
+  /// Lists the pairs within reach, as Neighbourhood has it; shrinks no margin.
   void near_pairs(const Columns<Dim>& x, const Eigen::VectorXd& radius, Eigen::VectorXd& margin,
                   std::vector<Pair>& pairs) const {
     pairs.clear();

@@ -22,8 +22,9 @@ namespace lagrain {
 template <int Dim>
 class CellGrid {
  public:
-  static const char* name() { return "linked cells"; }
+  static const char* name() { return "linked cells"; }  ///< for people
 
+  /// Lists the pairs within reach, as Neighbourhood has it; shrinks no margin.
   void near_pairs(const Columns<Dim>& x, const Eigen::VectorXd& radius, Eigen::VectorXd& margin,
                   std::vector<Pair>& pairs) {
     pairs.clear();

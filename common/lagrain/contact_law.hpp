@@ -12,21 +12,25 @@ namespace lagrain {
 
 /// History of a contact without history.
 struct NoMemory {
-  static constexpr int kReals = 0;
-  NoMemory seen_from_partner() const { return {}; }
+  static constexpr int kReals = 0;                   ///< it holds no number
+  NoMemory seen_from_partner() const { return {}; }  ///< the same nothing
   bool operator==(const NoMemory&) const = default;
 };
 
 /// A law of contact in Dim dimensions, written over a number type: double for one contact, Lanes
 /// for several at once.
 ///
-/// What a contact remembers is `Memory<Dim, Real>`: kReals numbers, reached by [], zero at first,
-/// and what the partner's side of the contact remembers by `seen_from_partner`.
-///
-/// `respond` advances the memory by the time step and returns the force; called again with time
-/// step 0 it returns the same force and changes nothing. From `contact_time`, the duration of a
-/// free collision, the time step is chosen; `natural_time` is 1 / omega0 of the spring, and
-/// `largest_damping_ratio` the strongest dashpot, in units of 2 m_eff omega0.
+/// * `needs` says what grains and contacts have to store for it.
+/// * `Memory<Dim, Real>` is what a contact remembers: kReals numbers, reached by [], zero at first;
+///   `seen_from_partner` gives what the partner's side of the contact remembers.
+/// * `respond` advances the memory by the time step [s] and returns the force [N] and the losses
+///   [J]; called again with time step 0 it returns the same force and changes nothing.
+/// * `elastic_energy` is what the springs of the contact hold [J].
+/// * `contact_time` is the duration of a free collision [s], from the effective mass [kg] and the
+///   effective radius [m]. The time step is chosen from it.
+/// * `natural_time` is 1 / omega0 of the spring [s], from the same two.
+/// * `largest_damping_ratio` is the strongest dashpot, in units of 2 m_eff omega0 [-].
+/// * `conservative` says whether no contact loses energy, as integrators of higher order require.
 template <class L, int Dim>
 concept ContactLaw = requires(const L law, const Touch<Dim>& touch,
                               typename L::template Memory<Dim>& memory,
@@ -50,7 +54,9 @@ concept ContactLaw = requires(const L law, const Touch<Dim>& touch,
 /// larger.
 inline constexpr double kTangentialMobility = 5;
 
-/// A law along the normal alone: also tells its tangent stiffness, which friction laws build on.
+/// A law along the normal alone, which friction laws build on. `normal_force` is the force [N],
+/// never negative; `elastic_force` is its part without the dashpot [N]; `stiffness_at` is the slope
+/// of the elastic force against the overlap [N/m].
 template <class L, int Dim>
 concept NormalLaw = ContactLaw<L, Dim> && requires(const L law, const Touch<Dim>& touch) {
   { law.normal_force(touch) } -> std::convertible_to<double>;   // [N], never negative

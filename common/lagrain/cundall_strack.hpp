@@ -24,24 +24,26 @@ namespace lagrain {
 /// Source: Cundall & Strack, Geotechnique 29 (1979) 47.
 template <class Normal>
 struct CundallStrack {
-  static constexpr Needs needs{.spin = true, .memory = true};
+  static constexpr Needs needs{.spin = true, .memory = true};  ///< both
 
   /// Stretch of the tangential spring [m], in the contact plane.
   template <int Dim, class Real = double>
   struct Memory {
-    static constexpr int kReals = Dim;
-    Vec<Dim, Real> stretch = Vec<Dim, Real>::Zero();
-    Real& operator[](int k) { return stretch[k]; }
-    const Real& operator[](int k) const { return stretch[k]; }
-    Memory seen_from_partner() const { return {-stretch}; }
+    static constexpr int kReals = Dim;                          ///< one for each component
+    Vec<Dim, Real> stretch = Vec<Dim, Real>::Zero();            ///< xi [m]
+    Real& operator[](int k) { return stretch[k]; }              ///< component k [m]
+    const Real& operator[](int k) const { return stretch[k]; }  ///< component k [m]
+    Memory seen_from_partner() const { return {-stretch}; }     ///< the opposite stretch
     bool operator==(const Memory&) const = default;
   };
 
-  Normal normal;
+  Normal normal;                        ///< the law along the normal
   double friction = 0;                  ///< mu [-]
   double stiffness_ratio = 2.0 / 7.0;   ///< kt / kn [-]
   double tangential_damping_ratio = 0;  ///< zeta_t [-]
 
+  /// ContactLaw asks for this member and explains it.
+  /// @{
   template <int Dim, class Real>
   Response<Dim, Real> respond(const Touch<Dim, Real>& touch, Memory<Dim, Real>& memory,
                               double time_step) const {
@@ -81,6 +83,7 @@ struct CundallStrack {
                     kTangentialMobility * tangential_damping_ratio * std::sqrt(stiffness_ratio));
   }
   bool conservative() const { return false; }
+  /// @}
 
  private:
   /// v, shortened to at most `length`.

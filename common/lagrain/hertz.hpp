@@ -24,7 +24,8 @@ namespace lagrain {
 /// Discs use the same formula (with their radii): the contact line of two cylinders has no finite
 /// stiffness of its own, so in the plane this is a model, not elasticity.
 struct Hertz {
-  static constexpr Needs needs{};
+  static constexpr Needs needs{};  ///< neither spin nor memory
+  /// Its contacts remember nothing.
   template <int Dim, class Real = double>
   using Memory = NoMemory;
 
@@ -32,6 +33,11 @@ struct Hertz {
   double damping_ratio = 0;  ///< zeta [-]
   double impact_speed = 0;   ///< the fastest collision expected [m/s]: sets the contact time
 
+  /// The law with the dashpot that gives a restitution.
+  /// @param modulus       E* [Pa], positive
+  /// @param restitution   of a head-on impact [-], in (0, 1]
+  /// @param impact_speed  the fastest collision expected [m/s], positive
+  /// @throws ContractError for a restitution outside (0, 1]
   static Hertz with_restitution(double modulus, double restitution, double impact_speed) {
     return {modulus, damping_ratio_for(restitution), impact_speed};
   }
@@ -43,6 +49,8 @@ struct Hertz {
     return 4.0 / 3.0 * modulus * sqrt(effective_radius);
   }
 
+  /// NormalLaw or ContactLaw asks for this member and explains it.
+  /// @{
   template <int Dim, class Real>
   Real stiffness_at(const Touch<Dim, Real>& touch) const {
     using std::sqrt;
@@ -70,20 +78,25 @@ struct Hertz {
   double elastic_energy(const Touch<Dim>& touch, const NoMemory&) const {
     return 0.4 * elastic_force(touch) * touch.overlap;
   }
+  /// @}
 
-  /// The undamped collision at `impact_speed` lasts 2.94328 delta_max / v, with
-  /// delta_max = (5 m v^2 / (4 K))^(2/5) (Johnson, Contact Mechanics, 1985, section 11.4); a linear
-  /// spring of that duration has 1 / omega0 = duration / pi.
+  /// The time 1 / omega0 [s] of the linear spring whose collisions last as long. The undamped
+  /// collision at `impact_speed` lasts 2.94328 delta_max / v, with
+  /// delta_max = (5 m v^2 / (4 K))^(2/5) (Johnson, Contact Mechanics, 1985, section 11.4), and a
+  /// linear spring of that duration has 1 / omega0 = duration / pi.
   double natural_time(double effective_mass, double effective_radius) const {
     const double deepest = std::pow(
         1.25 * effective_mass * impact_speed * impact_speed / coefficient(effective_radius), 0.4);
     return 2.94328 * deepest / impact_speed / std::numbers::pi;
   }
+  /// ContactLaw asks for this member and explains it.
+  /// @{
   double contact_time(double effective_mass, double effective_radius) const {
     return clamped_contact_time(damping_ratio) * natural_time(effective_mass, effective_radius);
   }
   double largest_damping_ratio() const { return damping_ratio; }
   bool conservative() const { return damping_ratio == 0; }
+  /// @}
 };
 
 static_assert(NormalLaw<Hertz, 2> && NormalLaw<Hertz, 3>);

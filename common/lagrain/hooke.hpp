@@ -20,18 +20,24 @@ namespace lagrain {
 /// Source: Cundall & Strack, Geotechnique 29 (1979) 47; Schwager & Poeschel, Granular Matter 9
 /// (2007) 465.
 struct LinearSpring {
-  static constexpr Needs needs{};
+  static constexpr Needs needs{};  ///< neither spin nor memory
+  /// Its contacts remember nothing.
   template <int Dim, class Real = double>
   using Memory = NoMemory;
 
   double stiffness = 0;      ///< k [N/m]
   double damping_ratio = 0;  ///< zeta [-]
 
-  /// @param stiffness [N/m] @param restitution of a head-on impact, in (0, 1]
+  /// The spring with the dashpot that gives a restitution.
+  /// @param stiffness    k [N/m], positive
+  /// @param restitution  of a head-on impact [-], in (0, 1]
+  /// @throws ContractError for a restitution outside (0, 1]
   static LinearSpring with_restitution(double stiffness, double restitution) {
     return {stiffness, damping_ratio_for(restitution)};
   }
 
+  /// NormalLaw or ContactLaw asks for this member and explains it.
+  /// @{
   template <int Dim, class Real>
   double stiffness_at(const Touch<Dim, Real>&) const {
     return stiffness;
@@ -64,6 +70,7 @@ struct LinearSpring {
   }
   double largest_damping_ratio() const { return damping_ratio; }
   bool conservative() const { return damping_ratio == 0; }
+  /// @}
 };
 
 static_assert(NormalLaw<LinearSpring, 2> && NormalLaw<LinearSpring, 3>);

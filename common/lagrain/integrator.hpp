@@ -26,6 +26,8 @@ concept Integrator = requires(double& x, double a, double dt) {
 /// Velocity from the old force, then place from the new velocity. First order at the grid points,
 /// symplectic, one force evaluation.
 struct SymplecticEuler {
+  /// Integrator asks for this member and explains it.
+  /// @{
   static constexpr const char* kName = "symplectic Euler";
   static constexpr bool kConservativeOnly = false;
   static constexpr int kEvaluations = 1;
@@ -38,6 +40,7 @@ struct SymplecticEuler {
   }
   template <class V>
   static void finish(V&, V&, const V&, const V&, double) {}
+  /// @}
 };
 
 /// Second order, symplectic without damping, one force evaluation (Swope et al., J. Chem. Phys. 76
@@ -45,6 +48,8 @@ struct SymplecticEuler {
 /// force sees the prediction v + dt a_old, which keeps second order, and the velocity is corrected
 /// afterwards by dt/2 (a_new - a_old).
 struct VelocityVerlet {
+  /// Integrator asks for this member and explains it.
+  /// @{
   static constexpr const char* kName = "velocity Verlet";
   static constexpr bool kConservativeOnly = false;
   static constexpr int kEvaluations = 1;
@@ -60,12 +65,15 @@ struct VelocityVerlet {
   static void finish(V&, V& v, const V& a, const V& before, double dt) {
     v += (0.5 * dt) * (a - before);
   }
+  /// @}
 };
 
 /// Fourth order, symplectic, four force evaluations: position-extended Forest-Ruth-like scheme of
 /// Omelyan, Mryglod & Folk, Comput. Phys. Commun. 146 (2002) 188. For forces that depend on places
 /// alone: no dashpot, no friction.
 struct ForestRuth {
+  /// Integrator asks for this member and explains it.
+  /// @{
   static constexpr const char* kName = "Forest-Ruth (PEFRL)";
   static constexpr bool kConservativeOnly = true;
   static constexpr int kEvaluations = 4;
@@ -86,6 +94,7 @@ struct ForestRuth {
     v += (kKicks.back() * dt) * a;
     x += (kDrifts.back() * dt) * v;
   }
+  /// @}
 
  private:
   static constexpr double kXi = 0.1786178958448091;

@@ -18,7 +18,7 @@ namespace lagrain {
 
 /// Where the energy is, and where it went [J].
 struct Ledger {
-  double kinetic = 0;
+  double kinetic = 0;    ///< of translation and rotation
   double gravity = 0;    ///< -sum m g.x, up to a constant
   double elastic = 0;    ///< in the springs of all contacts
   double wall_work = 0;  ///< put in by moving walls
@@ -90,11 +90,11 @@ Ledger energy_ledger(const Simulation<Dim, Law, Motion, N>& sim) {
 
 /// Overlaps relative to the smaller radius, and how many neighbours a grain touches.
 struct ContactStatistics {
-  std::int64_t contacts = 0;  ///< between grains
-  std::int64_t wall_contacts = 0;
-  double mean_overlap = 0;     ///< of grain and wall contacts, of the smaller radius [-]
-  double largest_overlap = 0;  ///< [-]
-  double coordination = 0;     ///< mean number of contacts of a grain, walls included [-]
+  std::int64_t contacts = 0;       ///< between grains
+  std::int64_t wall_contacts = 0;  ///< between a grain and a wall
+  double mean_overlap = 0;         ///< of grain and wall contacts, of the smaller radius [-]
+  double largest_overlap = 0;      ///< [-]
+  double coordination = 0;         ///< mean number of contacts of a grain, walls included [-]
 };
 
 /// Counts the contacts of a simulation as it is now.

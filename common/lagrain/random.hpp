@@ -13,6 +13,7 @@ namespace lagrain {
 /// Seeded generator. Same seed, same numbers, everywhere.
 class Random {
  public:
+  /// @param seed  any number; another one gives another sequence
   explicit Random(std::uint64_t seed) : engine_(seed) {}
 
   /// Uniform in [0, 1).

@@ -52,8 +52,8 @@ struct Body {
 /// A contact, or two grains apart: then `touching` is false and the touch means nothing.
 template <int Dim, class Real>
 struct MaybeTouch {
-  decltype(Real(0) < Real(0)) touching;
-  Touch<Dim, Real> touch;
+  decltype(Real(0) < Real(0)) touching;  ///< true or false, in each lane
+  Touch<Dim, Real> touch;                ///< of what touches
 };
 
 /// Step 2 of the paper for one pair, or one pair per lane: whether two grains touch, and how.

@@ -21,14 +21,17 @@ namespace lagrain {
 /// Source: Haff & Werner, Powder Technology 48 (1986) 239.
 template <class Normal>
 struct ViscousFriction {
-  static constexpr Needs needs{.spin = true, .memory = false};
+  static constexpr Needs needs{.spin = true, .memory = false};  ///< spin alone
+  /// Its contacts remember nothing.
   template <int Dim, class Real = double>
   using Memory = NoMemory;
 
-  Normal normal;
+  Normal normal;                           ///< the law along the normal
   double friction = 0;                     ///< mu [-]
   double tangential_damping_ratio = 0.15;  ///< zeta_t [-]
 
+  /// ContactLaw asks for this member and explains it.
+  /// @{
   template <int Dim, class Real>
   Response<Dim, Real> respond(const Touch<Dim, Real>& touch, NoMemory&, double time_step) const {
     using std::sqrt;
@@ -58,6 +61,7 @@ struct ViscousFriction {
     return std::max(normal.largest_damping_ratio(), kTangentialMobility * tangential_damping_ratio);
   }
   bool conservative() const { return false; }
+  /// @}
 };
 
 static_assert(ContactLaw<ViscousFriction<LinearSpring>, 2> &&

@@ -43,19 +43,19 @@ struct Fixed {};
 /// Motion with constant velocity between two times.
 template <int Dim>
 struct Steady {
-  Vec<Dim> velocity;  ///< [m/s]
-  double start = 0;   ///< [s]
-  double stop = std::numeric_limits<double>::infinity();
+  Vec<Dim> velocity;                                      ///< [m/s]
+  double start = 0;                                       ///< [s]
+  double stop = std::numeric_limits<double>::infinity();  ///< [s]
 };
 
 /// Harmonic motion between two times: displacement amplitude sin(2 pi frequency (t - start)). The
 /// wall is at rest outside, after the end where it then is.
 template <int Dim>
 struct Shake {
-  Vec<Dim> amplitude;    ///< [m]
-  double frequency = 0;  ///< [Hz]
-  double start = 0;      ///< [s]
-  double stop = std::numeric_limits<double>::infinity();
+  Vec<Dim> amplitude;                                     ///< [m]
+  double frequency = 0;                                   ///< [Hz]
+  double start = 0;                                       ///< [s]
+  double stop = std::numeric_limits<double>::infinity();  ///< [s]
 };
 
 /// Motion of a guided mass along its load, pushed by the load and by the grains. It is held until
@@ -70,34 +70,45 @@ struct Piston {
 /// A wall and the force that the grains exert on it.
 template <int Dim>
 struct Wall {
-  std::string name;
+  std::string name;                   ///< for people, and for the files of a run
   Vec<Dim> point = Vec<Dim>::Zero();  ///< now: on the plane, the segment's end, on the axis [m]
+  /// The shape says what is solid.
   std::variant<HalfSpace<Dim>, WallSegment<Dim>, Cylinder<Dim>> shape;
+  /// The motion says how it moves.
   std::variant<Fixed, Steady<Dim>, Shake<Dim>, Piston<Dim>> motion = Fixed{};
   int material = 0;                      ///< row of the table of laws
   Vec<Dim> home = Vec<Dim>::Zero();      ///< where it was at time 0 [m], for motions given in time
   Vec<Dim> velocity = Vec<Dim>::Zero();  ///< [m/s]
   Vec<Dim> force = Vec<Dim>::Zero();     ///< by the grains, in the last step [N]
 
+  /// A fixed half-space.
+  /// @param point   on the plane [m]
+  /// @param normal  towards the grains, of any length
   static Wall half_space(std::string name, const Vec<Dim>& point, const Vec<Dim>& normal) {
     return {std::move(name), point, HalfSpace<Dim>{normal.normalized()}, Fixed{}, 0, point};
   }
+  /// A fixed straight wall between two points [m].
   static Wall segment(std::string name, const Vec<Dim>& from, const Vec<Dim>& to) {
     return {std::move(name), from, WallSegment<Dim>{to - from}, Fixed{}, 0, from};
   }
-  /// @param axis zero in the plane
+  /// A fixed round container.
+  /// @param point  on the axis [m]
+  /// @param axis   of any length; zero in the plane, and for a ball
+  /// @param radius of the container [m]
   static Wall cylinder(std::string name, const Vec<Dim>& point, const Vec<Dim>& axis,
                        double radius) {
     return {std::move(name), point, Cylinder<Dim>{radius, axis.normalized()}, Fixed{}, 0, point};
   }
 
+  /// Whether it can move at all.
   bool moves() const { return !std::holds_alternative<Fixed>(motion); }
 
-  /// Distance [m] from the wall's surface to x, and the unit vector from the wall towards x.
+  /// The point of the wall that is nearest to a place.
   struct Foot {
-    double distance;
-    Vec<Dim> normal;
+    double distance;  ///< from the wall's surface; negative behind a half-space or a cylinder [m]
+    Vec<Dim> normal;  ///< unit, from the wall towards the place [-]
   };
+  /// The foot of x [m] on the wall as it is now.
   Foot foot(const Vec<Dim>& x) const {
     return std::visit([&](const auto& s) { return foot_on(s, x); }, shape);
   }

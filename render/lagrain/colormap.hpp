@@ -8,7 +8,10 @@ namespace lagrain {
 
 /// sRGB, 8 bits per channel; alpha is straight (not premultiplied), 255 is opaque.
 struct Colour {
-  std::uint8_t r = 0, g = 0, b = 0, a = 255;
+  std::uint8_t r = 0;    ///< red
+  std::uint8_t g = 0;    ///< green
+  std::uint8_t b = 0;    ///< blue
+  std::uint8_t a = 255;  ///< alpha
 
   friend bool operator==(const Colour&, const Colour&) = default;
 };

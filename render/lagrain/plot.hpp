@@ -20,8 +20,8 @@ struct Tick {
 
 /// Ticks of one axis, and the power of ten that their labels leave out.
 struct Ticks {
-  std::vector<Tick> ticks;
-  int exponent = 0;  ///< a label times 10^exponent is the value
+  std::vector<Tick> ticks;  ///< in increasing order
+  int exponent = 0;         ///< a label times 10^exponent is the value
 };
 
 /// Multiples of 1, 2 or 5 times a power of ten inside [low, high]: at least two, at most about
@@ -36,37 +36,50 @@ Ticks nice_ticks(double low, double high, int count = 6);
 Ticks log_ticks(double low, double high, int count = 6);
 
 /// Shape at each point of a series, so that series differ in grey print too.
-enum class Marker { none, disc, square, triangle, diamond, ring };
+enum class Marker {
+  none,      ///< the line alone
+  disc,      ///< a filled circle
+  square,    ///< a filled square
+  triangle,  ///< a filled triangle
+  diamond,   ///< a square on its corner
+  ring,      ///< a circle without filling
+};
 
+/// A curve, points, or both.
 struct Series {
   std::string name;       ///< for the legend; empty: not listed
   std::vector<double> x;  ///< in the axis' unit, shape N
   std::vector<double> y;  ///< N; a NaN, or a value <= 0 on a logarithmic axis, interrupts the line
-  Colour colour = style::kInk;
+  Colour colour = style::kInk;      ///< of line and markers
   double width = 1.0;               ///< [pt]; 0: markers only
   std::vector<double> dashes = {};  ///< [pt], as in Polyline
-  Marker marker = Marker::none;
+  Marker marker = Marker::none;     ///< at each point
 };
 
 /// Colour, width and dashes of the index-th series of a plot, distinguishable without colour.
 Series series_style(int index);
 
+/// An axis of a plot.
 struct Axis {
-  std::string label;  ///< with its unit: "time [s]"
-  bool log = false;
-  std::optional<double> low = {}, high = {};  ///< range; what is missing comes from the data
+  std::string label;                ///< with its unit: "time [s]"
+  bool log = false;                 ///< logarithmic
+  std::optional<double> low = {};   ///< where it begins; if missing, where the data do
+  std::optional<double> high = {};  ///< where it ends; if missing, where the data do
 };
 
+/// Where a legend stands.
 enum class Corner { top_left, top_right, bottom_left, bottom_right, none };
 
+/// Series against two axes.
 struct Plot {
-  Axis x, y;
-  std::vector<Series> series;
-  Corner legend = Corner::top_right;
+  Axis x;                             ///< the horizontal axis
+  Axis y;                             ///< the vertical axis
+  std::vector<Series> series;         ///< the later ones on top
+  Corner legend = Corner::top_right;  ///< none: no legend
 };
 
 /// Adds a plot that fills `area`, tick labels and axis names included.
-/// @returns the box inside the axes [pt], to line up with other panels
+/// @return the box inside the axes [pt], to line up with other panels
 /// @pre every series has as many x as y; there is something to show on each axis
 Box add_plot(DisplayList& list, const Box& area, const Plot& plot);
 
@@ -81,7 +94,7 @@ void add_colour_bar(DisplayList& list, const Box& bar, ColourMap map, double low
 /// @param values  e.g. three forces
 /// @param width   points of line width per unit of value
 /// @param unit    e.g. "kN"; also in markup
-/// @returns the box that the legend covers [pt]
+/// @return the box that the legend covers [pt]
 Box add_width_legend(DisplayList& list, const Vec<2>& at, std::span<const double> values,
                      double width, const std::string& unit, Colour colour = style::kContact);
 

@@ -19,11 +19,11 @@ namespace lagrain {
 
 /// Axis-parallel box between two corners, low <= high in all coordinates [m].
 struct Box3 {
-  Vec<3> low = Vec<3>::Zero();
-  Vec<3> high = Vec<3>::Zero();
+  Vec<3> low = Vec<3>::Zero();   ///< corner with the least coordinates
+  Vec<3> high = Vec<3>::Zero();  ///< corner with the greatest
 
-  Vec<3> size() const { return high - low; }
-  Vec<3> centre() const { return 0.5 * (low + high); }
+  Vec<3> size() const { return high - low; }            ///< lengths of its edges
+  Vec<3> centre() const { return 0.5 * (low + high); }  ///< its middle
 };
 
 /// Sphere. @pre radius >= 0
@@ -35,16 +35,18 @@ struct Ball {
 
 /// Cylinder with round ends, which reach a radius beyond from and to. @pre radius >= 0
 struct Tube {
-  Vec<3> from = Vec<3>::Zero(), to = Vec<3>::Zero();  ///< [m]
-  double radius = 0;                                  ///< [m]
-  Colour colour = style::kContact;                    ///< drawn opaque
+  Vec<3> from = Vec<3>::Zero();     ///< one end of the axis [m]
+  Vec<3> to = Vec<3>::Zero();       ///< the other [m]
+  double radius = 0;                ///< [m]
+  Colour colour = style::kContact;  ///< drawn opaque
 };
 
 /// Straight line of constant width on the page, hidden by what is in front of it; not lit, not cut,
 /// casts no shadow. Drawn opaque and at least one pixel wide.
 struct Line3 {
-  Vec<3> a = Vec<3>::Zero(), b = Vec<3>::Zero();  ///< [m]
-  Stroke stroke = style::kEdgeLine;               ///< [pt]
+  Vec<3> a = Vec<3>::Zero();         ///< one end [m]
+  Vec<3> b = Vec<3>::Zero();         ///< the other [m]
+  Stroke stroke = style::kEdgeLine;  ///< [pt]
 };
 
 /// Translucent plane convex quadrilateral, e.g. a wall of glass: tints what is behind it; not lit,
@@ -115,17 +117,17 @@ inline constexpr int kPrintSubframes = 24;
 
 /// A scene and how it is seen.
 struct Scene3 {
-  std::vector<Ball> balls = {};
-  std::vector<Tube> tubes = {};
-  std::vector<Line3> lines = {};
-  std::vector<Pane> panes = {};
-  std::vector<Cut> cuts = {};
-  std::optional<Floor> floor = {};
-  Camera camera = {};
-  Lights lights = {};
+  std::vector<Ball> balls = {};               ///< grains
+  std::vector<Tube> tubes = {};               ///< forces, rods
+  std::vector<Line3> lines = {};              ///< edges
+  std::vector<Pane> panes = {};               ///< walls
+  std::vector<Cut> cuts = {};                 ///< what is taken out, at most 8
+  std::optional<Floor> floor = {};            ///< catches shadows
+  Camera camera = {};                         ///< where the picture is taken from
+  Lights lights = {};                         ///< sun and sky
   Stroke outline = {{20, 20, 24, 150}, 0.3};  ///< where something nearer ends [pt]
   Colour background = style::kPaper;          ///< alpha 0 gives a transparent picture
-  int subframes = kPrintSubframes;
+  int subframes = kPrintSubframes;            ///< more are smoother and slower
 };
 
 /// Adds the twelve edges of a box.

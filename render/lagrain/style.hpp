@@ -19,7 +19,7 @@ inline constexpr double kThick = 1.4;     ///< what the reader should see first 
 
 inline constexpr Colour kInk{34, 34, 34, 255};       ///< text, axes
 inline constexpr Colour kFaint{150, 150, 150, 255};  ///< construction lines
-inline constexpr Colour kPaper{255, 255, 255, 255};
+inline constexpr Colour kPaper{255, 255, 255, 255};  ///< background
 
 inline constexpr Colour kGrain{214, 223, 232, 255};       ///< fill of a grain
 inline constexpr Colour kGrainOutline{62, 84, 107, 255};  ///< its outline
@@ -31,12 +31,12 @@ inline constexpr Colour kEdgeNew{0, 114, 178, 255};       ///< edge that appears
 inline constexpr Colour kEdgeGone{213, 94, 0, 255};       ///< edge that disappears
 inline constexpr Colour kEdgeStale{190, 190, 190, 255};   ///< edge that is out of date
 inline constexpr Colour kContact{150, 28, 34, 255};       ///< contacts, force chains
-inline constexpr Colour kWall{40, 40, 40, 255};
+inline constexpr Colour kWall{40, 40, 40, 255};           ///< walls
 
-inline constexpr Stroke kGrainLine{kGrainOutline, kMedium};
-inline constexpr Stroke kCellLine{kCellOutline, kThin};
-inline constexpr Stroke kEdgeLine{kEdge, kThin};
-inline constexpr Stroke kWallLine{kWall, kThick};
-inline constexpr Stroke kAxisLine{kInk, kThin};
+inline constexpr Stroke kGrainLine{kGrainOutline, kMedium};  ///< around a grain
+inline constexpr Stroke kCellLine{kCellOutline, kThin};      ///< around a cell
+inline constexpr Stroke kEdgeLine{kEdge, kThin};             ///< edges
+inline constexpr Stroke kWallLine{kWall, kThick};            ///< walls
+inline constexpr Stroke kAxisLine{kInk, kThin};              ///< axes of plots
 
 }  // namespace lagrain::style

@@ -14,7 +14,7 @@ namespace lagrain {
 struct VideoReport {
   bool encoded = false;        ///< true: one video file; false: a folder of numbered PNG files
   std::filesystem::path path;  ///< the file, or the folder
-  int frames = 0;
+  int frames = 0;              ///< how many it has
 };
 
 /// Writes a video frame by frame. `.mp4` is H.264 with yuv420p, which plays everywhere; `.webm` is
@@ -30,8 +30,11 @@ class VideoWriter {
   /// @throws SceneError for another ending, or if nothing can be written there
   VideoWriter(const std::filesystem::path& path, int fps);
   ~VideoWriter();
+  /// A writer can be moved; the one moved from is good for nothing but its end.
+  /// @{
   VideoWriter(VideoWriter&&) noexcept;
   VideoWriter& operator=(VideoWriter&&) noexcept;
+  /// @}
 
   /// Adds a frame; its colours are laid over white where it is transparent.
   /// @pre all frames of a video have the size of the first, at least 2 x 2 pixels
