@@ -23,22 +23,22 @@ namespace lagrain {
 template <int Dim, class Law>
 class ContactForces {
  public:
-  static constexpr Needs needs = Law::needs;
-  using Load = LoadRecord<Dim, needs>;
-  using Scene = ContactScene<Dim, Law>;
-  using List = NearList<Dim, typename Law::template Memory<Dim>>;
+  static constexpr Needs needs = Law::needs;                       ///< what the law needs
+  using Load = LoadRecord<Dim, needs>;                             ///< force and torque on a grain
+  using Scene = ContactScene<Dim, Law>;                            ///< what all contacts share
+  using List = NearList<Dim, typename Law::template Memory<Dim>>;  ///< where near pairs are listed
 
   /// What all blocks have added up, once each has been evaluated.
   struct Totals {
-    Tally tally;
+    Tally tally;              ///< losses, contacts, excess
     double pair_seconds = 0;  ///< of all threads together [s]
-    double wall_seconds = 0;
+    double wall_seconds = 0;  ///< the same for contacts with walls [s]
   };
 
   /// @param one_law  all contacts between grains follow the first law of the table
   ContactForces(InstructionSet set, bool one_law) : kernel_(set, one_law) {}
 
-  void measure_time(bool on) { measuring_ = on; }
+  void measure_time(bool on) { measuring_ = on; }  ///< whether times are taken from now on
 
   /// Makes room for an evaluation.
   void begin(const List& near, std::size_t walls, int threads) {

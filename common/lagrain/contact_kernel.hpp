@@ -26,9 +26,9 @@ const std::vector<InstructionSet>& instruction_sets();
 template <int Dim, class Law>
 class ContactKernel {
  public:
-  static constexpr Needs needs = Law::needs;
-  using Memory = typename Law::template Memory<Dim>;
-  using Scene = ContactScene<Dim, Law>;
+  static constexpr Needs needs = Law::needs;          ///< what the law needs
+  using Memory = typename Law::template Memory<Dim>;  ///< what a contact remembers
+  using Scene = ContactScene<Dim, Law>;               ///< what all contacts share
 
   /// @param one_law  all contacts between grains follow the first law of the table
   ContactKernel(InstructionSet set, bool one_law);
@@ -84,17 +84,24 @@ struct Sweeps {
 // The sweeps compiled for one instruction set each, everything inlined (except with sanitizers,
 // whose checks the compiler would inline for half an hour).
 #if defined(__SANITIZE_ADDRESS__)
+/// Attribute of a sweep: all that it calls is compiled into it.
 #define LAGRAIN_INLINED
 #else
+/// Attribute of a sweep: all that it calls is compiled into it.
 #define LAGRAIN_INLINED gnu::flatten
 #endif
 #if defined(__x86_64__)
+/// Attributes of a sweep for AVX2.
 #define LAGRAIN_FOR_AVX2 [[gnu::target("avx2"), LAGRAIN_INLINED]]
+/// Attributes of a sweep for AVX-512.
 #define LAGRAIN_FOR_AVX512 [[gnu::target("avx512f,avx512dq,avx512vl"), LAGRAIN_INLINED]]
 #else
+/// Attributes of a sweep for AVX2.
 #define LAGRAIN_FOR_AVX2
+/// Attributes of a sweep for AVX-512.
 #define LAGRAIN_FOR_AVX512
 #endif
+/// Defines the sweeps for one instruction set.
 #define LAGRAIN_COMPILED_SWEEPS(Name, Attributes, Real)                                           \
   template <int Dim, class Law>                                                                   \
   struct Name {                                                                                   \

@@ -35,8 +35,11 @@ using Frictionless = Normal;
   ROW(viscous, ViscousFriction __VA_OPT__(, ) __VA_ARGS__) \
   ROW(elastic, CundallStrack __VA_OPT__(, ) __VA_ARGS__)
 
+/// The word of a row.
 #define LAGRAIN_WORD(word, Law) word,
+/// The normal laws, by their words.
 enum class NormalModel { LAGRAIN_NORMAL_LAWS(LAGRAIN_WORD) };
+/// The friction laws, by their words.
 enum class FrictionModel { LAGRAIN_FRICTION_LAWS(LAGRAIN_WORD) };
 #undef LAGRAIN_WORD
 
@@ -57,23 +60,28 @@ enum class Range { any, not_negative, positive, fraction /* above 0 and at most 
 
 /// A key of the scene's table [law].
 struct LawKey {
-  std::string_view name;
-  std::string_view what;  ///< with its article: "a stiffness"
-  std::string_view unit;  ///< SI; empty for a pure number
-  Range range;
-  double LawNumbers::*number;
+  std::string_view name;             ///< as in the scene file
+  std::string_view what;             ///< with its article: "a stiffness"
+  std::string_view unit;             ///< SI; empty for a pure number
+  Range range;                       ///< what it accepts
+  double LawNumbers::*number;        ///< where it goes
   std::optional<double> fallback{};  ///< taken if the key is missing; none: the key is required
 };
 
 namespace law_keys {
+/// The key of a linear spring's stiffness.
 inline constexpr LawKey kStiffness{"stiffness", "a stiffness", "N/m", Range::positive,
                                    &LawNumbers::stiffness};
+/// The key of the effective modulus.
 inline constexpr LawKey kModulus{"modulus", "a modulus", "Pa", Range::positive,
                                  &LawNumbers::modulus};
+/// The key of the fastest collision expected.
 inline constexpr LawKey kImpactSpeed{"impact_speed", "a speed", "m/s", Range::positive,
                                      &LawNumbers::impact_speed};
+/// The key of the restitution of a head-on impact.
 inline constexpr LawKey kRestitution{"restitution", "a number", "", Range::fraction,
                                      &LawNumbers::restitution};
+/// The key of Coulomb's coefficient.
 inline constexpr LawKey kFriction{"friction", "a number", "", Range::not_negative,
                                   &LawNumbers::friction};
 }  // namespace law_keys
@@ -82,20 +90,28 @@ inline constexpr LawKey kFriction{"friction", "a number", "", Range::not_negativ
 template <class Normal>
 struct NormalLawEntry;
 
+/// The entry of LinearSpring.
 template <>
 struct NormalLawEntry<LinearSpring> {
+  /// What people call it.
   static constexpr std::string_view kInWords = "linear spring and dashpot";
+  /// The keys that it reads.
   static constexpr std::array kKeys{law_keys::kStiffness, law_keys::kRestitution};
+  /// The law that numbers describe.
   static LinearSpring make(const LawNumbers& n) {
     return LinearSpring::with_restitution(n.stiffness, n.restitution);
   }
 };
 
+/// The entry of Hertz.
 template <>
 struct NormalLawEntry<Hertz> {
+  /// What people call it.
   static constexpr std::string_view kInWords = "Hertz with viscous damping";
+  /// The keys that it reads.
   static constexpr std::array kKeys{law_keys::kModulus, law_keys::kImpactSpeed,
                                     law_keys::kRestitution};
+  /// The law that numbers describe.
   static Hertz make(const LawNumbers& n) {
     return Hertz::with_restitution(n.modulus, n.restitution, n.impact_speed);
   }
@@ -105,33 +121,41 @@ struct NormalLawEntry<Hertz> {
 template <template <class> class Friction>
 struct FrictionLawEntry;
 
+/// The entry of no friction.
 template <>
 struct FrictionLawEntry<Frictionless> {
-  static constexpr std::string_view kInWords = "no friction";
-  static constexpr std::array<LawKey, 0> kKeys{};
+  static constexpr std::string_view kInWords = "no friction";  ///< what people call it
+  static constexpr std::array<LawKey, 0> kKeys{};              ///< it reads no key
+  /// The friction law over a normal law, from the numbers.
   template <class Normal>
   static Normal over(const Normal& normal, const LawNumbers&) {
     return normal;
   }
 };
 
+/// The entry of ViscousFriction.
 template <>
 struct FrictionLawEntry<ViscousFriction> {
+  /// What people call it.
   static constexpr std::string_view kInWords = "viscous friction cut at Coulomb's limit";
   /// Without damping this friction would not act at all.
   static constexpr std::array kKeys{
       law_keys::kFriction,
       LawKey{"tangential_damping", "a number", "", Range::positive, &LawNumbers::tangential_damping,
              ViscousFriction<LinearSpring>{}.tangential_damping_ratio}};
+  /// The friction law over a normal law, from the numbers.
   template <class Normal>
   static ViscousFriction<Normal> over(const Normal& normal, const LawNumbers& n) {
     return {normal, n.friction, n.tangential_damping};
   }
 };
 
+/// The entry of CundallStrack.
 template <>
 struct FrictionLawEntry<CundallStrack> {
+  /// What people call it.
   static constexpr std::string_view kInWords = "Coulomb friction with elastic memory";
+  /// The keys that it reads.
   static constexpr std::array kKeys{
       law_keys::kFriction,
       LawKey{"tangential_damping", "a number", "", Range::not_negative,
@@ -139,6 +163,7 @@ struct FrictionLawEntry<CundallStrack> {
              CundallStrack<LinearSpring>{}.tangential_damping_ratio},
       LawKey{"stiffness_ratio", "a number", "", Range::positive, &LawNumbers::stiffness_ratio,
              CundallStrack<LinearSpring>{}.stiffness_ratio}};
+  /// The friction law over a normal law, from the numbers.
   template <class Normal>
   static CundallStrack<Normal> over(const Normal& normal, const LawNumbers& n) {
     return {normal, n.friction, n.stiffness_ratio, n.tangential_damping};
@@ -147,24 +172,30 @@ struct FrictionLawEntry<CundallStrack> {
 
 /// An entry as data.
 struct LawDescription {
-  std::string_view word;      ///< of the scene file
-  std::string_view in_words;  ///< for people
-  std::span<const LawKey> keys;
+  std::string_view word;         ///< of the scene file
+  std::string_view in_words;     ///< for people
+  std::span<const LawKey> keys;  ///< that it reads
 };
 
+/// The description of a row.
 #define LAGRAIN_DESCRIBE(word, Law, Entry) \
   LawDescription{#word, Entry<Law>::kInWords, Entry<Law>::kKeys},
+/// All normal laws, in the order of the list.
 inline constexpr std::array kNormalLaws{LAGRAIN_NORMAL_LAWS(LAGRAIN_DESCRIBE, NormalLawEntry)};
+/// All friction laws, in the order of the list.
 inline constexpr std::array kFrictionLaws{
     LAGRAIN_FRICTION_LAWS(LAGRAIN_DESCRIBE, FrictionLawEntry)};
 #undef LAGRAIN_DESCRIBE
 
+/// The description of a law.
+/// @{
 inline constexpr const LawDescription& description_of(NormalModel model) {
   return kNormalLaws[static_cast<std::size_t>(model)];
 }
 inline constexpr const LawDescription& description_of(FrictionModel model) {
   return kFrictionLaws[static_cast<std::size_t>(model)];
 }
+/// @}
 
 /// The law that numbers describe.
 template <class Normal, template <class> class Friction>

@@ -21,6 +21,7 @@ struct Tally {
   double excess = 0;    ///< largest overlap beyond the limit [m]
   double contacts = 0;  ///< that touch [-]
 
+  /// Adds another tally; of the excesses the larger one stays.
   Tally& operator+=(const Tally& other) {
     dashpot += other.dashpot;
     friction += other.friction;
@@ -51,11 +52,14 @@ inline Listing listing_for(std::size_t pairs, double touching) {
 /// i and subtracted from that of j.
 template <int Dim, Needs needs>
 struct PairLoad {
-  LoadRecord<Dim, needs> for_i, for_j;
+  LoadRecord<Dim, needs> for_i;  ///< what i feels
+  LoadRecord<Dim, needs> for_j;  ///< the opposite of what j feels
 
+  /// Adds its force to the load of i.
   void give_to_i(LoadRecord<Dim, needs>& load) const {
     for (std::size_t c = 0; c < load.at.size(); ++c) load.at[c] += for_i.at[c];
   }
+  /// Subtracts its force from the load of j.
   void give_to_j(LoadRecord<Dim, needs>& load) const {
     for (std::size_t c = 0; c < load.at.size(); ++c) load.at[c] -= for_j.at[c];
   }
@@ -64,15 +68,16 @@ struct PairLoad {
 /// What all contacts of a pass share: the grains, walls and laws, and where loads are added.
 template <int Dim, class Law>
 struct ContactScene {
-  const GrainRecord<Dim, Law::needs>* grains = nullptr;
+  const GrainRecord<Dim, Law::needs>* grains = nullptr;  ///< of all slots
   LoadRecord<Dim, Law::needs>* loads = nullptr;          ///< of the slots from first_slot on
   const std::vector<std::uint8_t>* materials = nullptr;  ///< of the slots; empty: all are 0
-  const LawTable<Law>* laws = nullptr;
-  const Wall<Dim>* walls = nullptr;
+  const LawTable<Law>* laws = nullptr;                   ///< between materials
+  const Wall<Dim>* walls = nullptr;                      ///< as they are now
   double time_step = 0;        ///< what memories and losses advance by [s]
   double largest_overlap = 0;  ///< of the smaller radius [-]
-  int first_slot = 0;
+  int first_slot = 0;          ///< whose load is the first of `loads`
 
+  /// The load of a slot.
   LoadRecord<Dim, Law::needs>& load(int slot) const { return loads[slot - first_slot]; }
 };
 

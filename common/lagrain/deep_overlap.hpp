@@ -20,10 +20,10 @@ namespace lagrain {
 
 /// An overlap of a grain with another one or with a wall.
 struct DeepOverlap {
-  double ratio = 0;  ///< of the smaller radius [-]
-  int slot = -1;
-  int partner = -1;  ///< slot of the other grain, or the wall's place among the walls
-  bool with_wall = false;
+  double ratio = 0;        ///< of the smaller radius [-]
+  int slot = -1;           ///< of the grain; -1: no overlap is noted
+  int partner = -1;        ///< slot of the other grain, or the wall's place among the walls
+  bool with_wall = false;  ///< whether the partner is a wall
 };
 
 /// Overlap of two grains, of the smaller radius [-]; negative if they are apart.
@@ -32,6 +32,7 @@ double overlap_ratio(const GrainRecord<Dim, needs>& a, const GrainRecord<Dim, ne
   return (a.radius() + b.radius() - (a.position() - b.position()).norm()) /
          std::min(a.radius(), b.radius());
 }
+/// Overlap of a grain with a wall, of its radius [-]; negative if they are apart.
 template <int Dim, Needs needs>
 double overlap_ratio(const GrainRecord<Dim, needs>& grain, const Wall<Dim>& wall) {
   return 1 - wall.foot(grain.position()).distance / grain.radius();
@@ -54,6 +55,7 @@ void note_deepest(DeepOverlap& deepest, const PairTable<P, Memory>& table,
   }
 }
 
+/// Ends the run, and names who overlaps.
 /// @param number  number(slot) of a grain
 /// @param t       time [s]
 /// @param limit   of the smaller radius [-]

@@ -57,6 +57,7 @@ class EdgeList {
   }
 
   /// To be called before and after the notes of an update.
+  /// @{
   void begin_update() {
     first_new_ = notes_.size();
     all_new_ = false;
@@ -65,6 +66,7 @@ class EdgeList {
   void end_update() {
     if (notes_.size() > edges_.size() / 4) settle();
   }
+  /// @}
   /// Calls f(i, j) for the edges made since begin_update(), maybe more than once, and maybe for
   /// some that are gone again; for all edges if the list was found anew, or settled, since then.
   template <class F>
@@ -114,11 +116,16 @@ class EdgeList {
 
   /// False for a list that ignores notes.
   bool live() const { return live_; }
+  /// Notes that an edge between two sites was made, or is gone.
+  /// @{
   void note_made(int a, int b) { note(a, b, 0); }
   void note_gone(int a, int b) { note(a, b, 1); }
+  /// @}
   /// Notes so far; those after a mark can be taken back, or lose the edges that went and came.
   std::size_t mark() const { return notes_.size(); }
+  /// Forgets the notes after a mark.
   void take_back(std::size_t mark) { notes_.resize(std::min(mark, notes_.size())); }
+  /// Forgets those after a mark that cancel each other.
   void drop_unchanged(std::size_t mark) {
     const auto first = notes_.begin() + static_cast<std::ptrdiff_t>(mark);
     std::sort(first, notes_.end());

@@ -32,8 +32,9 @@ namespace lagrain {
 template <int Dim, RegularTriangulation<Dim> T>
 class Follower {
  public:
-  using Sites = LazySites<Dim, T>;
+  using Sites = LazySites<Dim, T>;  ///< what it works on
 
+  /// Follows with these choices.
   explicit Follower(const Laziness& laziness) : laziness_(laziness) {}
 
   /// Grains whose pairs T may lack, sorted.

@@ -22,8 +22,8 @@ namespace lagrain {
 template <int Dim, Needs needs>
 class GrainStore {
  public:
-  using Record = GrainRecord<Dim, needs>;
-  using Load = LoadRecord<Dim, needs>;
+  using Record = GrainRecord<Dim, needs>;  ///< what contacts read of a grain
+  using Load = LoadRecord<Dim, needs>;     ///< what contacts write
 
   /// @param with_materials  whether materials matter: more than one law acts
   GrainStore(Grains<Dim, needs> grains, bool with_materials)
@@ -50,20 +50,26 @@ class GrainStore {
     }
   }
 
-  int count() const { return static_cast<int>(records_.size()); }
+  int count() const { return static_cast<int>(records_.size()); }  ///< N
   /// The number of the grain in a slot.
   int number(int slot) const { return numbers_.empty() ? slot : numbers_[index(slot)]; }
 
   // By slot.
+  /// The record in a slot.
+  /// @{
   Record& record(int slot) { return records_[index(slot)]; }
   const Record& record(int slot) const { return records_[index(slot)]; }
-  const std::vector<Record>& records() const { return records_; }
+  /// @}
+  const std::vector<Record>& records() const { return records_; }  ///< all of them, by slot
   /// The forces that were evaluated last.
+  /// @{
   Load& load(int slot) { return loads_[index(slot)]; }
   const Load& load(int slot) const { return loads_[index(slot)]; }
-  const Eigen::VectorXd& radius() const { return radius_; }
+  /// @}
+  const Eigen::VectorXd& radius() const { return radius_; }  ///< N, by slot [m]
   /// Empty where materials do not matter.
   const std::vector<std::uint8_t>& materials() const { return materials_; }
+  /// Dim x N, by slot [m].
   Columns<Dim> places() const {
     Columns<Dim> x(Dim, count());
     for (int slot = 0; slot < count(); ++slot) x.col(slot) = record(slot).position();
@@ -76,8 +82,10 @@ class GrainStore {
     return by_number_;
   }
   /// What never changes, by number, is there without being put together.
+  /// @{
   const Eigen::VectorXd& radii() const { return by_number_.radius; }
   const Eigen::VectorXd& masses() const { return by_number_.mass; }
+  /// @}
   /// The records have changed, or are about to.
   void outdate() { by_number_is_known_ = false; }
 

@@ -41,7 +41,7 @@ struct Grains : std::conditional_t<needs.spin, SpinState<Dim>, NoSpin> {
   Eigen::VectorXd inverse_mass;        ///< N [1/kg], 0 for a pinned grain
   std::vector<std::uint8_t> material;  ///< N: row of the table of laws; empty if all are 0
 
-  int size() const { return static_cast<int>(radius.size()); }
+  int size() const { return static_cast<int>(radius.size()); }  ///< N
 };
 
 /// What a grain is made from, before it joins `Grains`.
@@ -53,7 +53,7 @@ struct Grain {
   double radius = 0;                          ///< [m]
   double mass = 0;                            ///< [kg]
   int material = 0;                           ///< row of the table of laws
-  bool pinned = false;
+  bool pinned = false;                        ///< stays where it is, whatever pushes it
 };
 
 /// Volume [m^3] of a disc of the given depth [m] (Dim = 2: a rod) or of a sphere (depth unused).

@@ -25,15 +25,17 @@ class LawTable {
     LAGRAIN_EXPECTS(materials >= 1 && materials <= 255, "materials " + std::to_string(materials));
   }
 
+  /// Gives a pair of materials its law, in both orders.
   void set(int a, int b, const Law& law) {
     laws_[index(static_cast<std::size_t>(a), static_cast<std::size_t>(b))] = law;
     laws_[index(static_cast<std::size_t>(b), static_cast<std::size_t>(a))] = law;
   }
+  /// The law between two materials.
   const Law& between(std::size_t a, std::size_t b) const {
     return one_law() ? laws_.front() : laws_[index(a, b)];
   }
-  int materials() const { return static_cast<int>(materials_); }
-  bool one_law() const { return materials_ == 1; }
+  int materials() const { return static_cast<int>(materials_); }  ///< rows of the table
+  bool one_law() const { return materials_ == 1; }  ///< whether the same law holds for all
 
   /// The law between the grains i and j.
   /// @param material  of all grains; empty if all are of material 0

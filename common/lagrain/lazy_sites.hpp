@@ -50,7 +50,7 @@ struct LazySites {
   /// Where a grain stands in an update: not concerned, in `waiting`, or given its new reference.
   enum class Standing : unsigned char { at_rest, waiting, placed };
 
-  T t;
+  T t;                                ///< regular for the references and weights
   Columns<Dim> reference;             ///< c_i [m]
   Eigen::VectorXd skin;               ///< s_i [m]
   Eigen::VectorXd weight;             ///< w_i [m^2]
@@ -58,14 +58,16 @@ struct LazySites {
   std::vector<Standing> standing;     ///< of each grain
   std::vector<int> waiting;           ///< grains that need new references
   std::vector<int> placed;            ///< grains that got them in this update; maybe twice
-  TriangulationCost cost;
+  TriangulationCost cost;             ///< since the start
   /// References stand aside by this times the skin, each in a direction of its own: so they are in
   /// general position even where grains lie on a lattice, and predicates need no exact arithmetic.
   Columns<Dim> aside;
 
-  int size() const { return static_cast<int>(weight.size()); }
+  int size() const { return static_cast<int>(weight.size()); }  ///< number of grains
+  /// Where grain i stands.
   Standing& standing_of(int i) { return standing[static_cast<std::size_t>(i)]; }
 
+  /// Forgets all grains and begins with these, of which none waits.
   void reset(const Columns<Dim>& x, const Eigen::VectorXd& radius) {
     Random random(1);
     aside = x.unaryExpr([&](double) { return kHair * random.uniform(-1, 1); });
@@ -84,6 +86,7 @@ struct LazySites {
     t.build(reference, weight);
   }
 
+  /// Gives a grain another skin [m], and so another weight.
   void set_skin(const Eigen::VectorXd& radius, int i, double s) {
     skin[i] = s;
     weight[i] = weight_with(radius[i], s);

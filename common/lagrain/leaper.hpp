@@ -22,7 +22,7 @@ namespace lagrain {
 template <int Dim, RegularTriangulation<Dim> T>
 class Leaper {
  public:
-  using Sites = LazySites<Dim, T>;
+  using Sites = LazySites<Dim, T>;  ///< what it works on
 
   /// Builds T anew with references where the grains are, and lists the pairs that meet.
   /// @pre T knows the grains

@@ -13,8 +13,8 @@ namespace lagrain {
 template <int Dim, Needs needs, Integrator Motion>
 class MovingGrain {
  public:
-  using Record = GrainRecord<Dim, needs>;
-  using Load = LoadRecord<Dim, needs>;
+  using Record = GrainRecord<Dim, needs>;  ///< where its place and velocity are kept
+  using Load = LoadRecord<Dim, needs>;     ///< where its force is kept
 
   /// @param load  force and torque that were evaluated last
   MovingGrain(const Record& record, const Load& load)
@@ -41,6 +41,7 @@ class MovingGrain {
     Motion::advance(evaluation, x_, v_, a_, dt);
     if constexpr (needs.spin) Motion::advance(evaluation, angle_, omega_, alpha_, dt);
   }
+  /// Writes place, velocity and spin into its record.
   void store(Record& record) const {
     record.position() = x_;
     record.velocity() = v_;

@@ -43,7 +43,7 @@ class NearList {
  public:
   /// One end of a pair across blocks.
   struct End {
-    int slot;
+    int slot;          ///< of this end
     int partner;       ///< the slot of the other end
     std::size_t pair;  ///< its rank among the pairs across of all blocks
     bool second() const { return partner < slot; }  ///< the end j of the pair
@@ -51,24 +51,27 @@ class NearList {
   };
   /// The slots [first_slot, end_slot) and the pairs of their grains.
   struct Block {
-    int first_slot = 0;
-    int end_slot = 0;
-    PairTable<Pair, Memory> within;  ///< both grains are in the block
-    PairTable<Pair, Memory> across;  ///< i is in the block, j in a later one
-    PairTable<WallPair, Memory> walls;
-    std::size_t first_across = 0;  ///< rank of its first pair across
-    std::vector<End> ends;         ///< in the block, of pairs across; in the order of the pairs
+    int first_slot = 0;                 ///< where its slots begin
+    int end_slot = 0;                   ///< where they end: the next block's first slot
+    PairTable<Pair, Memory> within;     ///< both grains are in the block
+    PairTable<Pair, Memory> across;     ///< i is in the block, j in a later one
+    PairTable<WallPair, Memory> walls;  ///< grains of the block and walls
+    std::size_t first_across = 0;       ///< rank of its first pair across
+    std::vector<End> ends;  ///< in the block, of pairs across; in the order of the pairs
   };
 
+  /// All blocks, in the order of their slots.
+  /// @{
   std::vector<Block>& blocks() { return blocks_; }
   const std::vector<Block>& blocks() const { return blocks_; }
+  /// @}
   /// Pairs between grains; and those of them across blocks.
   std::size_t pair_count() const {
     std::size_t count = across_;
     for (const Block& block : blocks_) count += block.within.size();
     return count;
   }
-  std::size_t across_count() const { return across_; }
+  std::size_t across_count() const { return across_; }  ///< pairs whose grains lie in two blocks
 
   /// Whether a refresh would pay although the list holds. It has lived long then, and hardly any
   /// slow grain has left its margin: narrower margins would do.

@@ -17,8 +17,8 @@ namespace lagrain {
 
 /// Two grains, i < j.
 struct Pair {
-  int i = 0;
-  int j = 0;
+  int i = 0;  ///< the smaller number
+  int j = 0;  ///< the larger number
   bool operator==(const Pair&) const = default;
   /// One comparison instead of two: tables of pairs are searched and sorted all the time.
   auto operator<=>(const Pair& other) const { return key() <=> other.key(); }
@@ -49,6 +49,7 @@ bool within_reach(const Vec<Dim>& a, double reach_a, const Vec<Dim>& b, double r
   const double reach = reach_a + reach_b;
   return (a - b).squaredNorm() <= reach * reach;
 }
+/// The same for grains i and j of arrays: centres and radii [m], margins [m].
 template <int Dim>
 bool within_reach(const Columns<Dim>& x, const Eigen::VectorXd& radius,
                   const Eigen::VectorXd& margin, int i, int j) {

@@ -17,21 +17,22 @@ namespace lagrain {
 
 /// A grain and a wall near it.
 struct WallPair {
-  int i = 0;
-  int wall = 0;
+  int i = 0;     ///< the grain, by slot or number
+  int wall = 0;  ///< place among the walls
   auto operator<=>(const WallPair&) const = default;
 };
 
-/// Sorted pairs and, where the law remembers, one memory each. Memories survive a refresh by merging
-/// two sorted lists; where the law remembers nothing, nothing is stored and nothing merged.
+/// Sorted pairs and, where the law remembers, one memory each. Memories survive a refresh by
+/// merging two sorted lists; where the law remembers nothing, nothing is stored and nothing merged.
 template <class P, class Memory>
 class PairTable {
  public:
-  static constexpr int kReals = Memory::kReals;
+  static constexpr int kReals = Memory::kReals;  ///< numbers that a contact remembers
 
-  const std::vector<P>& pairs() const { return pairs_; }
-  std::size_t size() const { return pairs_.size(); }
+  const std::vector<P>& pairs() const { return pairs_; }  ///< all pairs, sorted
+  std::size_t size() const { return pairs_.size(); }      ///< how many they are
 
+  /// What pair k remembers.
   Memory memory(std::size_t k) const {
     Memory m;
     if constexpr (kReals > 0) {
@@ -39,14 +40,17 @@ class PairTable {
     }
     return m;
   }
+  /// Gives pair k another memory.
   void set_memory(std::size_t k, const Memory& m) {
     if constexpr (kReals > 0) {
       for (int r = 0; r < kReals; ++r) memory_row(r)[k] = m[r];
     }
   }
   /// Number r of the memories of all pairs, side by side.
+  /// @{
   double* memory_row(int r) { return memory_[static_cast<std::size_t>(r)].data(); }
   const double* memory_row(int r) const { return memory_[static_cast<std::size_t>(r)].data(); }
+  /// @}
 
   /// Puts `pairs` (sorted) in place of its own, with these memories.
   void assign(std::vector<P> pairs, const std::vector<Memory>& memories) {

@@ -44,9 +44,10 @@ namespace lagrain {
 template <int Dim>
 class ReachList {
  public:
+  /// A ball by its centre and radius.
   struct Ball {
-    Vec<Dim> centre;
-    double radius;
+    Vec<Dim> centre;  ///< [m]
+    double radius;    ///< [m]
   };
 
   /// Lists the pairs of n balls anew.

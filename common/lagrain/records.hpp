@@ -30,6 +30,8 @@ constexpr std::size_t record_alignment(int doubles) {
 /// What contacts read of a grain, as one row of numbers. The constants are their places in it.
 template <int Dim, Needs needs>
 struct GrainRecord {
+  /// The place of a quantity in the row; kSize is the row's length.
+  /// @{
   static constexpr int kPosition = 0;
   static constexpr int kRadius = Dim;
   static constexpr int kVelocity = Dim + 1;
@@ -37,9 +39,12 @@ struct GrainRecord {
   static constexpr int kOmega = 2 * Dim + 2;
   static constexpr int kInverseInertia = kOmega + kSpinDim<Dim>;
   static constexpr int kSize = needs.spin ? padded_to_four(kInverseInertia + 1) : kOmega;
+  /// @}
 
-  alignas(record_alignment(kSize)) std::array<double, kSize> at{};
+  alignas(record_alignment(kSize)) std::array<double, kSize> at{};  ///< the row
 
+  /// The quantity in its place: position [m], velocity [m/s], omega [rad/s], radius [m].
+  /// @{
   Eigen::Map<Vec<Dim>> position() { return Eigen::Map<Vec<Dim>>(&at[kPosition]); }
   Eigen::Map<const Vec<Dim>> position() const { return Eigen::Map<const Vec<Dim>>(&at[kPosition]); }
   Eigen::Map<Vec<Dim>> velocity() { return Eigen::Map<Vec<Dim>>(&at[kVelocity]); }
@@ -49,24 +54,31 @@ struct GrainRecord {
     return Eigen::Map<const SpinVec<Dim>>(&at[kOmega]);
   }
   double radius() const { return at[kRadius]; }
+  /// @}
 };
 
 /// What contacts write: the force and torque on a grain. Its mass fills a gap.
 template <int Dim, Needs needs>
 struct LoadRecord {
+  /// The place of a quantity in the row; kSize is the row's length.
+  /// @{
   static constexpr int kForce = 0;
   static constexpr int kMass = Dim;
   static constexpr int kTorque = Dim + 1;
   static constexpr int kSize = padded_to_four(kTorque + (needs.spin ? kSpinDim<Dim> : 0));
+  /// @}
 
-  alignas(record_alignment(kSize)) std::array<double, kSize> at{};
+  alignas(record_alignment(kSize)) std::array<double, kSize> at{};  ///< the row
 
+  /// The quantity in its place: force [N], torque [N m].
+  /// @{
   Eigen::Map<Vec<Dim>> force() { return Eigen::Map<Vec<Dim>>(&at[kForce]); }
   Eigen::Map<const Vec<Dim>> force() const { return Eigen::Map<const Vec<Dim>>(&at[kForce]); }
   Eigen::Map<SpinVec<Dim>> torque() { return Eigen::Map<SpinVec<Dim>>(&at[kTorque]); }
   Eigen::Map<const SpinVec<Dim>> torque() const {
     return Eigen::Map<const SpinVec<Dim>>(&at[kTorque]);
   }
+  /// @}
 };
 
 /// Asks for a record that contacts will read in no good order, before they wait for memory.

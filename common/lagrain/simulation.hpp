@@ -52,8 +52,8 @@ namespace lagrain {
 template <int Dim, ContactLaw<Dim> Law, Integrator Motion, Neighbourhood<Dim> N>
 class Simulation {
  public:
-  static constexpr Needs needs = Law::needs;
-  using Memory = typename Law::template Memory<Dim>;
+  static constexpr Needs needs = Law::needs;          ///< what the law needs
+  using Memory = typename Law::template Memory<Dim>;  ///< what a contact remembers
 
   /// Evaluates the forces at time 0.
   /// @throws ContractError if the time step is not safe (the message names the safe one), a
@@ -108,17 +108,18 @@ class Simulation {
     }
   }
 
-  std::int64_t steps() const { return steps_; }
+  std::int64_t steps() const { return steps_; }                                     ///< made so far
   double time() const { return static_cast<double>(steps_) * setting_.time_step; }  ///< [s]
   /// All grains as they are now, by number. Put together when asked for; stays until the next step.
   const Grains<Dim, needs>& grains() const { return store_.by_number(); }
   // What never changes is there without being put together.
   const Eigen::VectorXd& radii() const { return store_.radii(); }    ///< N, by number [m]
   const Eigen::VectorXd& masses() const { return store_.masses(); }  ///< N, by number [kg]
-  const std::vector<Wall<Dim>>& walls() const { return walls_; }
-  const LawTable<Law>& laws() const { return laws_; }
-  const Setting<Dim>& setting() const { return setting_; }
-  const N& neighbourhood() const { return neighbourhood_; }
+  const std::vector<Wall<Dim>>& walls() const { return walls_; }     ///< as they are now
+  const LawTable<Law>& laws() const { return laws_; }                ///< as they were given
+  const Setting<Dim>& setting() const { return setting_; }           ///< as it holds now
+  const N& neighbourhood() const { return neighbourhood_; }          ///< what proposes the pairs
+  /// Energy put in and taken out since the start.
   const EnergyFlow& flow() const { return flow_; }
 
   /// The listed pairs, sorted: they hold every contact while near_list_holds().
@@ -134,8 +135,8 @@ class Simulation {
     sort_pairs(pairs, count());
     return pairs;
   }
-  std::size_t near_count() const { return near_.pair_count(); }
-  std::int64_t refreshes() const { return near_.refreshes(); }  ///< of the near list
+  std::size_t near_count() const { return near_.pair_count(); }  ///< how many pairs are listed
+  std::int64_t refreshes() const { return near_.refreshes(); }   ///< of the near list
   /// Grains that the near list centred anew between refreshes.
   std::int64_t amended() const { return near_.amended(); }
   /// False when a step that ended with a move has made the list expire: the next forces renew it.
@@ -155,7 +156,9 @@ class Simulation {
     LAGRAIN_EXPECTS(threads >= 1, "threads " + std::to_string(threads));
     setting_.threads = threads;
   }
+  /// Where the time went while it was measured.
   const PhaseTimes& times() const { return times_; }
+  /// Whether the time of each phase is measured from now on.
   void measure_phases(bool on) {
     measuring_ = on;
     forces_.measure_time(on);

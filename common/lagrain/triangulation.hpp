@@ -31,6 +31,7 @@ struct UpdateReport {
   std::int64_t reinserted = 0;
   std::int64_t rebuilds = 0;  ///< builds from nothing, the last rung
 
+  /// Adds the counts of another update.
   UpdateReport& operator+=(const UpdateReport& other) {
     flips += other.flips;
     extracted += other.extracted;

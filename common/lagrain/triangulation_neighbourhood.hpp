@@ -39,15 +39,16 @@ template <int Dim, RegularTriangulation<Dim> T = Triangulation<Dim>>
 class TriangulationNeighbourhood {
  public:
   TriangulationNeighbourhood() = default;
+  /// Follows and leaps with these choices.
   explicit TriangulationNeighbourhood(Laziness laziness)
       : laziness_(laziness), follower_(laziness) {}
 
-  static const char* name() { return "regular triangulation"; }
+  static const char* name() { return "regular triangulation"; }  ///< for people
   /// Regular for the reference balls, those of the last leap if T leaps; in a frame that
   /// drifts with the grains.
   const T& triangulation() const { return sites_.t; }
-  const TriangulationCost& cost() const { return sites_.cost; }
-  const Laziness& laziness() const { return laziness_; }
+  const TriangulationCost& cost() const { return sites_.cost; }  ///< since the start
+  const Laziness& laziness() const { return laziness_; }         ///< what was chosen
   /// Without the certificate, or a T that follows, pairs may be missing.
   bool keeps_promise() const { return laziness_.certify && laziness_.follow; }
 

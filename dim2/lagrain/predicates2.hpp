@@ -18,9 +18,9 @@ namespace lagrain {
 
 /// A weighted site: position x, y [m] and weight w [m^2]. All finite.
 struct Site2 {
-  double x;
-  double y;
-  double w;
+  double x;  ///< [m]
+  double y;  ///< [m]
+  double w;  ///< [m^2]
 
   bool operator==(const Site2&) const = default;
 };

@@ -25,30 +25,39 @@ class Topology2 {
   static constexpr int kInfinite = -1;  ///< the vertex at infinity
   static constexpr int kNone = -1;      ///< no corner
 
+  /// The next corner of the triangle, counter-clockwise.
   static int next(int corner) { return (corner & 3) == 2 ? corner - 2 : corner + 1; }
+  /// The previous corner of the triangle.
   static int prev(int corner) { return (corner & 3) == 0 ? corner + 2 : corner - 1; }
 
   /// Empties everything; `vertices` finite vertices without a corner.
   void clear(int vertices);
   /// One more vertex, without a corner.
   void add_vertex() { corner_of_.push_back(kNone); }
+  /// Makes room for so many triangles.
   void reserve(std::size_t count) { triangles_.reserve(count); }
 
   /// Slots of triangles, dead ones included.
   int slots() const { return static_cast<int>(triangles_.size()); }
   /// Triangles, infinite ones included.
   int triangles() const { return slots() - static_cast<int>(free_.size()); }
+  /// Whether a slot holds a triangle.
   bool alive(int triangle) const { return triangles_[index(triangle)].vertex[0] != kDead; }
 
+  /// The vertex at a corner.
   int vertex(int corner) const { return triangles_[index(corner >> 2)].vertex[corner & 3]; }
+  /// The corner across the edge opposite to a corner.
   int twin(int corner) const { return triangles_[index(corner >> 2)].twin[corner & 3]; }
   /// Ends of the edge opposite to a corner.
+  /// @{
   int source(int corner) const { return vertex(next(corner)); }
   int target(int corner) const { return vertex(prev(corner)); }
+  /// @}
   /// The three vertices of a triangle, counter-clockwise; all negative and not kInfinite if dead.
   std::span<const int, 3> vertices(int triangle) const {
     return std::span<const int, 3>(triangles_[index(triangle)].vertex);
   }
+  /// Whether it has the vertex kInfinite.
   bool infinite(int triangle) const {
     const auto v = vertices(triangle);
     return (v[0] | v[1] | v[2]) < 0;
@@ -56,6 +65,7 @@ class Topology2 {
 
   /// Any corner at a vertex; negative without one (the owner may keep a note of its own there).
   int corner_of(int v) const { return corner_of_[index(v + 1)]; }
+  /// Lets a vertex know one of its corners.
   void set_corner_of(int v, int corner) { corner_of_[index(v + 1)] = corner; }
 
   /// The corner at the same vertex in the next triangle counter-clockwise.
@@ -82,7 +92,7 @@ class Topology2 {
   void renumber(std::span<const int> order);
   /// Appends a triangle (or takes a dead slot); twins are still to be linked.
   int add(int a, int b, int c);
-  void link(int corner, int other);
+  void link(int corner, int other);  ///< makes two corners twins
 
   /// Replaces the edge opposite to `corner` by the other diagonal. The apex stays at `corner`; the
   /// four outer edges are then those opposite to corner, prev(corner) and the same of the other
@@ -96,9 +106,11 @@ class Topology2 {
   void fill_from(int v, std::span<const int> hole, std::span<const int> rim);
 
   /// Marks: a triangle is marked or not, and all marks vanish at once.
+  /// @{
   void clear_marks();
   bool marked(int triangle) const { return triangles_[index(triangle)].mark == epoch_; }
   void set_mark(int triangle) { triangles_[index(triangle)].mark = epoch_; }
+  /// @}
 
   /// Sets or clears the flag of a corner; returns what it was.
   bool exchange_flag(int corner, bool on) {

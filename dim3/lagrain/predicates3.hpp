@@ -17,10 +17,10 @@ namespace lagrain {
 
 /// A weighted site: position x, y, z [m] and weight w [m^2]. All finite.
 struct Site3 {
-  double x;
-  double y;
-  double z;
-  double w;
+  double x;  ///< [m]
+  double y;  ///< [m]
+  double z;  ///< [m]
+  double w;  ///< [m^2]
 
   bool operator==(const Site3&) const = default;
 };

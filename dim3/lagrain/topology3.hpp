@@ -34,18 +34,22 @@ class Topology3 {
   void clear(int vertices);
   /// One more vertex, without a corner.
   void add_vertex() { corner_of_.push_back(kNone); }
-  void reserve(std::size_t count);
+  void reserve(std::size_t count);  ///< makes room for so many tetrahedra
 
   /// Slots of tetrahedra, dead ones included.
   int slots() const { return static_cast<int>(cells_.size()); }
   /// Tetrahedra, infinite ones included.
   int cells() const { return slots() - static_cast<int>(free_.size()); }
+  /// Whether a slot holds a tetrahedron.
   bool alive(int cell) const { return cells_[index(cell)].vertex[0] != kDead; }
 
+  /// The vertex at a corner.
   int vertex(int corner) const { return cells_[index(corner >> 2)].vertex[corner & 3]; }
+  /// The corner across the facet opposite to a corner.
   int twin(int corner) const { return cells_[index(corner >> 2)].twin[corner & 3]; }
   /// The four vertices; all negative and not kInfinite if dead.
   const Quad& vertices(int cell) const { return cells_[index(cell)].vertex; }
+  /// Whether it has the vertex kInfinite.
   bool infinite(int cell) const {
     const Quad& v = vertices(cell);
     return (v[0] | v[1] | v[2] | v[3]) < 0;
@@ -58,6 +62,7 @@ class Topology3 {
 
   /// Any corner at a vertex; negative without one (the owner may keep a note of its own there).
   int corner_of(int v) const { return corner_of_[index(v + 1)]; }
+  /// Lets a vertex know one of its corners.
   void set_corner_of(int v, int corner) { corner_of_[index(v + 1)] = corner; }
 
   /// One step round an edge. The facet opposite to `through` holds the edge; `other` is the second
@@ -80,7 +85,8 @@ class Topology3 {
   void renumber(std::span<const int> order);
   /// Appends a cell (or takes a dead slot); twins are still to be linked.
   int add(const Quad& quad);
-  void release(int cell);
+  void release(int cell);  ///< frees a slot; twins still point to it
+  /// Makes two corners twins.
   void link(int corner, int other) {
     cells_[index(corner >> 2)].twin[corner & 3] = other;
     cells_[index(other >> 2)].twin[other & 3] = corner;
@@ -99,9 +105,11 @@ class Topology3 {
 
   /// Marks: a cell is marked or not, and all marks vanish at once. They are scratch, which whoever
   /// only reads may use.
+  /// @{
   void clear_marks() const;
   bool marked(int cell) const { return mark_[index(cell)] == epoch_; }
   void set_mark(int cell) const { mark_[index(cell)] = epoch_; }
+  /// @}
 
   /// Calls f(a, b, inside) once for each edge that has a marked cell around it: its ends, and
   /// whether all cells around it are marked. An edge is what cells turn around, not a pair of

@@ -111,9 +111,11 @@ Lights over_the_shoulder(const Camera& camera);
 
 /// Numbers of sub-frames: pictures that are averaged into one, each with another sun, other lights
 /// of the sky, and pixels moved by a fraction. They smooth edges and shadows, and cost time.
+/// @{
 inline constexpr int kPreviewSubframes = 1;
 inline constexpr int kVideoSubframes = 6;
 inline constexpr int kPrintSubframes = 24;
+/// @}
 
 /// A scene and how it is seen.
 struct Scene3 {

@@ -17,11 +17,15 @@ namespace lagrain {
 template <int Dim>
 class AnyNeighbourhood {
  public:
+  /// Takes over a neighbourhood of any type.
   template <Neighbourhood<Dim> N>
   explicit AnyNeighbourhood(N neighbourhood)
       : held_(std::make_unique<Held<N>>(std::move(neighbourhood))) {}
 
-  const char* name() const { return held_->name(); }
+  const char* name() const { return held_->name(); }  ///< for people
+  /// What the held one answers, as Neighbourhood and AmendableNeighbourhood have it; pairs_of is
+  /// false where it cannot amend.
+  /// @{
   void near_pairs(const Columns<Dim>& x, const Eigen::VectorXd& radius, Eigen::VectorXd& margin,
                   std::vector<Pair>& pairs) {
     held_->near_pairs(x, radius, margin, pairs);
@@ -30,6 +34,7 @@ class AnyNeighbourhood {
                 Eigen::VectorXd& margin, std::vector<Pair>& pairs) {
     return held_->pairs_of(strays, place, radius, margin, pairs);
   }
+  /// @}
   /// The grains have other numbers from now on.
   void forget() { held_->forget(); }
   /// Whether it leaves out no pair.

@@ -31,8 +31,10 @@ class Csv {
   }
 
   /// A number that is none leaves its cell empty.
+  /// @{
   void number(std::floating_point auto value) { cell(std::isnan(value) ? "" : shortest(value)); }
   void number(std::integral auto value) { cell(std::to_string(value)); }
+  /// @}
   /// Puts text in quotes where it has to be.
   void word(std::string_view text) {
     if (text.find_first_of(",\"\n\r") == std::string_view::npos) {
@@ -52,12 +54,13 @@ class Csv {
   void names(int dimension, const std::string& stem, const std::string& unit) {
     for (int d = 0; d < dimension; ++d) word(stem + "xyz"[d] + "[" + unit + "]");
   }
+  /// Ends a row that was written cell by cell.
   void end() {
     text_ += '\n';
     first_ = true;
   }
 
-  const std::string& text() const { return text_; }
+  const std::string& text() const { return text_; }  ///< all rows so far
   /// Gives the rows away and begins again.
   std::string take() { return std::exchange(text_, {}); }
 

@@ -35,6 +35,7 @@ class RunFormat {
 template <int Dim>
 class CsvFormat final : public RunFormat<Dim> {
  public:
+  /// Writes into a folder that exists.
   explicit CsvFormat(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   void begin(const Run<Dim>& run) override;

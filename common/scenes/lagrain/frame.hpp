@@ -16,12 +16,13 @@ namespace lagrain {
 /// The grains at one instant.
 template <int Dim>
 struct Frame {
-  std::int64_t step = 0;
+  std::int64_t step = 0;                       ///< steps made until then
   double time = 0;                             ///< [s]
   Columns<Dim> position;                       ///< Dim x N [m]
   Columns<Dim> velocity;                       ///< Dim x N [m/s]
   std::optional<Columns<kSpinDim<Dim>>> spin;  ///< N columns [rad/s]; none where nothing spins
 
+  /// The frame of this instant.
   static Frame of(const Run<Dim>& run) {
     Frame frame{run.steps(), run.time(), run.positions(), run.velocities(), {}};
     if (run.spins() != nullptr) frame.spin = *run.spins();
@@ -31,7 +32,7 @@ struct Frame {
 
 /// A column of the series.
 struct SeriesColumn {
-  std::string name;
+  std::string name;  ///< without its unit
   std::string unit;  ///< "-" for a pure number
 };
 

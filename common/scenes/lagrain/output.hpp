@@ -30,14 +30,15 @@ const char* version();
 
 /// Where a run is, for a progress line.
 struct Progress {
-  double fraction = 0;  ///< of the steps [-]
-  double time = 0;      ///< simulated [s]
-  std::int64_t contacts = 0;
-  double seconds_left = 0;  ///< of wall clock, guessed [s]
+  double fraction = 0;        ///< of the steps [-]
+  double time = 0;            ///< simulated [s]
+  std::int64_t contacts = 0;  ///< between grains, now
+  double seconds_left = 0;    ///< of wall clock, guessed [s]
 };
 
+/// How a run is recorded.
 struct RecordOptions {
-  std::filesystem::path folder;
+  std::filesystem::path folder;                   ///< made if it is not there
   std::function<bool()> stop;                     ///< asked after every step
   std::function<void(const Progress&)> progress;  ///< told a few times a second
 };

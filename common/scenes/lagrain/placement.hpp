@@ -12,9 +12,9 @@ namespace lagrain {
 /// The grains of a scene at time 0: those placed by hand first, then the fills in order.
 template <int Dim>
 struct Placement {
-  std::vector<Grain<Dim>> grains;
-  std::vector<int> material;  ///< N: index into the scene's materials
-  std::vector<int> group;     ///< N: index into the scene's fills; -1 for a grain placed by hand
+  std::vector<Grain<Dim>> grains;  ///< N
+  std::vector<int> material;       ///< N: index into the scene's materials
+  std::vector<int> group;  ///< N: index into the scene's fills; -1 for a grain placed by hand
 };
 
 /// Places the grains and checks them.

@@ -54,33 +54,34 @@ class Run {
   void advance_to(double t);
 
   std::int64_t steps_planned() const { return steps_planned_; }  ///< the scene's duration in steps
+  /// Whether all planned steps are made.
   bool finished() const { return steps() >= steps_planned_; }
 
-  virtual std::int64_t steps() const = 0;
-  virtual double time() const = 0;  ///< [s]
-  virtual TimeScales time_scales() const = 0;
+  virtual std::int64_t steps() const = 0;              ///< made so far
+  virtual double time() const = 0;                     ///< [s]
+  virtual TimeScales time_scales() const = 0;          ///< of the scene at its start
   virtual const Columns<Dim>& positions() const = 0;   ///< Dim x N [m]
   virtual const Columns<Dim>& velocities() const = 0;  ///< Dim x N [m/s]
   /// N columns [rad/s]; null where nothing spins.
   virtual const Columns<kSpinDim<Dim>>* spins() const = 0;
-  virtual const Eigen::VectorXd& radii() const = 0;   ///< N [m]
-  virtual const Eigen::VectorXd& masses() const = 0;  ///< N [kg]
-  virtual const std::vector<Wall<Dim>>& walls() const = 0;
-  virtual std::vector<ContactRecord<Dim>> contacts() const = 0;  ///< grains first, in order
-  virtual ContactStatistics statistics() const = 0;
-  virtual Ledger ledger() const = 0;
-  virtual std::vector<Pair> near_pairs() const = 0;  ///< sorted
-  virtual std::int64_t refreshes() const = 0;        ///< of the near list
-  virtual const AnyNeighbourhood<Dim>& neighbourhood() const = 0;
+  virtual const Eigen::VectorXd& radii() const = 0;                ///< N [m]
+  virtual const Eigen::VectorXd& masses() const = 0;               ///< N [kg]
+  virtual const std::vector<Wall<Dim>>& walls() const = 0;         ///< as they are now
+  virtual std::vector<ContactRecord<Dim>> contacts() const = 0;    ///< grains first, in order
+  virtual ContactStatistics statistics() const = 0;                ///< of the contacts now
+  virtual Ledger ledger() const = 0;                               ///< where the energy is now
+  virtual std::vector<Pair> near_pairs() const = 0;                ///< sorted
+  virtual std::int64_t refreshes() const = 0;                      ///< of the near list
+  virtual const AnyNeighbourhood<Dim>& neighbourhood() const = 0;  ///< what proposes pairs
   /// Wall-clock time spent on knowing the near pairs [s].
   virtual double neighbourhood_seconds() const = 0;
-  virtual ModelSize size() const = 0;
+  virtual ModelSize size() const = 0;  ///< of the model that was chosen
 
   /// Threads that share the steps from now on; results do not depend on it.
   /// @throws ContractError if there are none
   virtual void use_threads(int threads) = 0;
 
-  int count() const { return static_cast<int>(radii().size()); }
+  int count() const { return static_cast<int>(radii().size()); }  ///< N
   /// As it runs: the time step is in seconds.
   const Scene<Dim>& scene() const { return scene_; }
   double time_step() const { return scene_.time_step.seconds; }          ///< [s]
@@ -88,10 +89,10 @@ class Run {
   const std::vector<int>& groups() const { return groups_; }             ///< N, see Placement
   const Ledger& start() const { return start_; }                         ///< the ledger at time 0
   double energy_residual() const { return residual(ledger(), start_); }  ///< [J]
-  const ContactAudit<Dim>& audit() const { return audit_; }
+  const ContactAudit<Dim>& audit() const { return audit_; }  ///< what audits have found so far
 
  protected:
-  Run(Scene<Dim> scene, std::vector<int> materials, std::vector<int> groups);
+  Run(Scene<Dim> scene, std::vector<int> materials, std::vector<int> groups);  ///< for make_run
   /// To be called at the end of the constructor.
   void started();
 

@@ -20,55 +20,62 @@
 
 namespace lagrain {
 
+/// The integrators that a scene can name.
 enum class IntegratorModel { velocity_verlet, symplectic_euler, fourth_order };
+/// The neighbourhoods that a scene can name.
 enum class NeighbourhoodModel { triangulation, linked_cells, all_pairs };
 
 /// The words of the scene file.
+/// @{
 std::string_view name_of(NormalModel model);
 std::string_view name_of(FrictionModel model);
 std::string_view name_of(IntegratorModel model);
 std::string_view name_of(NeighbourhoodModel model);
+/// @}
 
 /// Numbers that hold between two materials instead of the scene's own.
 struct PairLaw {
-  int a = 0;  ///< material
-  int b = 0;  ///< material
-  LawNumbers law;
+  int a = 0;       ///< material
+  int b = 0;       ///< material
+  LawNumbers law;  ///< the numbers of the law
 };
 
+/// What grains and walls are made of.
 struct Material {
-  std::string name;
+  std::string name;    ///< as the scene calls it
   double density = 0;  ///< [kg/m^3]; 0 if only walls are made of it
 };
 
 /// Radii uniform between two bounds [m].
 struct UniformRadius {
-  double low = 0;
-  double high = 0;
+  double low = 0;   ///< [m]
+  double high = 0;  ///< [m]
 };
 
 /// Radii [m] picked from a list; weights are relative numbers of grains.
 struct ListedRadius {
-  std::vector<double> values;
-  std::vector<double> weights;
+  std::vector<double> values;   ///< [m]
+  std::vector<double> weights;  ///< one for each value; empty: all alike
 };
 
+/// One radius [m], or a law of many.
 using RadiusLaw = std::variant<double, UniformRadius, ListedRadius>;
 
+/// How a fill places its grains.
 enum class Arrangement { lattice, random };
 
 /// A group of grains that fills an axis-parallel region.
 template <int Dim>
 struct Fill {
-  std::string name;
-  int material = 0;
-  std::optional<int> count;  ///< none: as many as the lattice holds
-  RadiusLaw radius;
-  Vec<Dim> low = Vec<Dim>::Zero();   ///< [m]
-  Vec<Dim> high = Vec<Dim>::Zero();  ///< [m]
-  Arrangement arrangement = Arrangement::lattice;
-  Vec<Dim> velocity = Vec<Dim>::Zero();  ///< [m/s]
-  double random_speed = 0;               ///< added, in a random direction [m/s]
+  std::string name;                                ///< as the scene calls it
+  int material = 0;                                ///< place among the materials
+  std::optional<int> count;                        ///< none: as many as the lattice holds
+  RadiusLaw radius;                                ///< of its grains
+  Vec<Dim> low = Vec<Dim>::Zero();                 ///< [m]
+  Vec<Dim> high = Vec<Dim>::Zero();                ///< [m]
+  Arrangement arrangement = Arrangement::lattice;  ///< rows, or places at random
+  Vec<Dim> velocity = Vec<Dim>::Zero();            ///< [m/s]
+  double random_speed = 0;                         ///< added, in a random direction [m/s]
 };
 
 /// A grain placed by hand.
@@ -78,16 +85,17 @@ struct PlacedGrain {
   double radius = 0;                         ///< [m]
   Vec<Dim> velocity = Vec<Dim>::Zero();      ///< [m/s]
   SpinVec<Dim> spin = SpinVec<Dim>::Zero();  ///< [rad/s]
-  int material = 0;
-  bool pinned = false;
+  int material = 0;                          ///< place among the materials
+  bool pinned = false;                       ///< stays where it is
 };
 
 /// A time step [s], or a fraction of the shortest contact time.
 struct TimeStep {
   double fraction_of_contact = 1.0 / 25;  ///< used if `seconds` is 0
-  double seconds = 0;
+  double seconds = 0;                     ///< [s]
 };
 
+/// What a run writes, and how often.
 struct OutputPlan {
   double frames_every = 0;  ///< [s]; 0: first and last frame only
   double series_every = 0;  ///< [s]; 0: a thousandth of the duration
@@ -100,28 +108,28 @@ struct Scene {
   std::string file;                  ///< where it was read; empty if built by a program
   std::map<std::string, int> lines;  ///< key -> line in that file, for messages
 
-  std::string title;
-  std::uint64_t seed = 1;
-  double duration = 0;  ///< [s]
-  TimeStep time_step;
-  Vec<Dim> gravity = Vec<Dim>::Zero();  ///< [m/s^2]
-  double depth = 1;                     ///< of a disc [m]; spheres ignore it
-  NormalModel normal = NormalModel::linear;
-  FrictionModel friction = FrictionModel::none;
-  IntegratorModel integrator = IntegratorModel::velocity_verlet;
-  NeighbourhoodModel neighbourhood = NeighbourhoodModel::triangulation;
+  std::string title;                             ///< for people
+  std::uint64_t seed = 1;                        ///< of everything random
+  double duration = 0;                           ///< [s]
+  TimeStep time_step;                            ///< of the integrator
+  Vec<Dim> gravity = Vec<Dim>::Zero();           ///< [m/s^2]
+  double depth = 1;                              ///< of a disc [m]; spheres ignore it
+  NormalModel normal = NormalModel::linear;      ///< the law along the normal
+  FrictionModel friction = FrictionModel::none;  ///< the law of friction
+  IntegratorModel integrator = IntegratorModel::velocity_verlet;         ///< of the motion
+  NeighbourhoodModel neighbourhood = NeighbourhoodModel::triangulation;  ///< what proposes pairs
   double largest_overlap = kLargestOverlap;  ///< of the smaller radius: beyond it the run stops [-]
-  double largest_initial_overlap = 0.01;  ///< of the smaller radius [-]
-  bool audit = false;
+  double largest_initial_overlap = 0.01;     ///< of the smaller radius [-]
+  bool audit = false;     ///< whether contacts are searched from nothing now and then
   int audit_every = 100;  ///< steps, above 1,000 grains
 
-  LawNumbers law;
-  std::vector<PairLaw> pairs;
-  std::vector<Material> materials;
-  std::vector<Fill<Dim>> fills;
-  std::vector<PlacedGrain<Dim>> grains;
-  std::vector<Wall<Dim>> walls;  ///<
-  OutputPlan output;
+  LawNumbers law;                        ///< the numbers of the law
+  std::vector<PairLaw> pairs;            ///< between materials
+  std::vector<Material> materials;       ///< all that occur
+  std::vector<Fill<Dim>> fills;          ///< groups of grains
+  std::vector<PlacedGrain<Dim>> grains;  ///< placed by hand
+  std::vector<Wall<Dim>> walls;          ///<
+  OutputPlan output;                     ///< what is written
 
   /// "file:line: key: message", with what is known of it.
   SceneError error(const std::string& key, const std::string& message) const {

@@ -10,16 +10,16 @@ namespace lagrain {
 
 /// Powers of metre, kilogram and second. Angles are pure numbers.
 struct Unit {
-  int metre = 0;
-  int kilogram = 0;
-  int second = 0;
+  int metre = 0;     ///< power of the metre
+  int kilogram = 0;  ///< power of the kilogram
+  int second = 0;    ///< power of the second
   bool operator==(const Unit&) const = default;
 };
 
 /// A number with its unit, converted to SI.
 struct Quantity {
-  double value = 0;
-  Unit unit;
+  double value = 0;  ///< in SI
+  Unit unit;         ///< of the value
 };
 
 /// Reads a number and a unit: factors joined by `*` or `/`, each a unit with an SI prefix and a
