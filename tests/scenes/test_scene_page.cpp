@@ -12,7 +12,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <array>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <regex>
@@ -110,7 +110,7 @@ std::set<std::string> all_keys() {
 }
 
 /// Scenes in which every table occurs, and every shape and law that changes which keys are known.
-std::vector<std::string> scenes_to_try() {
+std::vector<std::string> make_scenes() {
   const std::string plain = R"(dimension = 2
 duration = 1
 gravity = [0, -9.81]
@@ -168,6 +168,11 @@ high = [1, 1]
   };
 }
 
+const std::vector<std::string>& scenes_to_try() {
+  static const std::vector<std::string> scenes = make_scenes();
+  return scenes;
+}
+
 /// A scene with `key = value` in one of its tables, in place of what the key was there.
 /// @returns nothing if the scene has no such table, or, if `only_new`, if the key is there
 std::optional<std::string> with_key(const std::string& scene, const std::string& path,
@@ -179,8 +184,8 @@ std::optional<std::string> with_key(const std::string& scene, const std::string&
   std::string here;
   for (const std::string& line : lines_of(scene)) {
     if (line.starts_with("[")) here = path_of(line);
-    const bool replaced = (here == path && line.starts_with(key + " = ")) ||
-                          here == inner || here.starts_with(inner + ".");
+    const bool replaced = (here == path && line.starts_with(key + " = ")) || here == inner ||
+                          here.starts_with(inner + ".");
     if (replaced && only_new) return {};
     if (!replaced) text += line + "\n";
     if (line.starts_with("[") && here == path) {
@@ -275,8 +280,8 @@ TEST_SUITE("scene page") {
           if (const std::string range = range_in(message); !range.empty()) ranges.insert(range);
           const auto words = message.find(": expected \"");
           if (words == std::string::npos) continue;
-          for (std::sregex_iterator at(message.begin() + static_cast<std::ptrdiff_t>(words),
-                                       message.end(), word),
+          for (std::sregex_iterator
+                   at(message.begin() + static_cast<std::ptrdiff_t>(words), message.end(), word),
                end;
                at != end; ++at) {
             CHECK(row.meaning.find((*at)[0]) != std::string::npos);
