@@ -9,6 +9,7 @@
 
 namespace lagrain {
 
+/// @cond
 #define LAGRAIN_KERNEL(word, Normal, Friction)                \
   extern template class ContactKernel<2, Friction<Normal>>; \
   extern template class ContactKernel<3, Friction<Normal>>;
@@ -16,5 +17,6 @@ namespace lagrain {
 LAGRAIN_FRICTION_LAWS(LAGRAIN_KERNELS)
 #undef LAGRAIN_KERNELS
 #undef LAGRAIN_KERNEL
+/// @endcond
 
 }  // namespace lagrain
