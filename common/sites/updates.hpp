@@ -62,13 +62,15 @@ UpdateReport MovingSites<Dim>::move(std::span<const int> moved, const Columns<Di
     expect_finite<Dim>(sites.col(id), weights[id], id);
   }
   begin();
-  moved_.clear();
+  moved_.resize(moved.size());
+  std::size_t count = 0;
   for (const int id : moved) {
     const Site place = site_at(sites.col(id), weights[id]);
     if (place == sites_[index(id)]) continue;  // also drops repetitions
     sites_[index(id)] = place;
-    moved_.push_back(id);
+    moved_[count++] = id;
   }
+  moved_.resize(count);
   if (moved_.empty()) return finish();
   if (self().tiny()) {
     self().rebuild();
