@@ -50,7 +50,8 @@ Scene3 seen_from_below(const Run<3>& run, const Columns<3>& x, int subframes) {
 }
 
 std::string label(double time) {
-  return "$t$ = " + fixed(time, 2) + " s";
+  // Frames lie half-way between two hundredths: rounded up whatever the last bit of the time is.
+  return "$t$ = " + fixed(std::round(100 * time) / 100, 2) + " s";
 }
 
 /// Grains placed by hand come first, and the large one is the only one.

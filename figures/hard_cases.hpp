@@ -2,7 +2,7 @@
 /// @file
 /// Scenes that are hard for a program of this kind. Every case is a function that runs its scene
 /// and returns what happened, as numbers: the tests assert on them, figure 18 shows them. Each
-/// heading below has its file in hard_cases/.
+/// heading below has its file in hard_cases/. Without a StopCheck a case runs to its end.
 
 #include "figure.hpp"
 

@@ -283,7 +283,8 @@ std::string digits(double density) {
 }
 
 std::string difference_text(double density, double paper) {
-  return (density < paper ? "" : "+") + rounded(density - paper, 2);
+  const std::string difference = rounded(density - paper, 2);
+  return density < paper ? difference : "+" + difference;
 }
 
 std::string quick_text(bool quick) {
