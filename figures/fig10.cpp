@@ -6,6 +6,7 @@
 #include "diagrams.hpp"
 #include "trials.hpp"
 
+#include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 #include <lagrain/restitution.hpp>
 

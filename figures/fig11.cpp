@@ -8,6 +8,7 @@
 #include "rigid.hpp"
 #include "trials.hpp"
 
+#include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 
 #include <array>

@@ -6,6 +6,7 @@
 
 #include <lagrain/all_pairs.hpp>
 #include <lagrain/cell_grid.hpp>
+#include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 #include <lagrain/triangulation2.hpp>
 #include <lagrain/triangulation3.hpp>

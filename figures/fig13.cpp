@@ -9,6 +9,7 @@
 #include "measure.hpp"
 #include "predicate_trials.hpp"
 
+#include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 #include <lagrain/paint.hpp>
 #include <lagrain/plot.hpp>

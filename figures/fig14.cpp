@@ -10,6 +10,7 @@
 #include "measure.hpp"
 
 #include <lagrain/audit.hpp>
+#include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 #include <lagrain/random.hpp>
 #include <lagrain/run.hpp>

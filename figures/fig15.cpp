@@ -5,6 +5,7 @@
 #include "diagrams.hpp"
 #include "measure.hpp"
 
+#include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 
 #include <algorithm>

@@ -11,6 +11,7 @@
 #include "rigid.hpp"
 #include "trials.hpp"
 
+#include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 
 #include <algorithm>

@@ -10,6 +10,7 @@
 #include "measure.hpp"
 #include "rigid.hpp"
 
+#include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 
 #include <algorithm>

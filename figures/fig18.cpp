@@ -7,6 +7,7 @@
 #include "hard_cases.hpp"
 #include "measure.hpp"
 
+#include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 #include <lagrain/run.hpp>
 

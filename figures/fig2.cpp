@@ -9,6 +9,7 @@
 #include "geometry_drawing.hpp"
 #include "geometry_figures.hpp"
 
+#include <lagrain/numbers.hpp>
 #include <lagrain/plot.hpp>
 #include <lagrain/run.hpp>
 #include <lagrain/text.hpp>

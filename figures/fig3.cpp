@@ -8,6 +8,7 @@
 #include "geometry_drawing.hpp"
 #include "geometry_figures.hpp"
 
+#include <lagrain/numbers.hpp>
 #include <lagrain/plot.hpp>
 #include <lagrain/random.hpp>
 #include <lagrain/run.hpp>

@@ -11,6 +11,7 @@
 #include "geometry_figures.hpp"
 
 #include <lagrain/check.hpp>
+#include <lagrain/numbers.hpp>
 #include <lagrain/plot.hpp>
 #include <lagrain/run.hpp>
 #include <lagrain/text.hpp>

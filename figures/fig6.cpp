@@ -6,6 +6,7 @@
 
 #include "packing.hpp"
 
+#include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 #include <lagrain/paint.hpp>
 #include <lagrain/style.hpp>

@@ -6,6 +6,7 @@
 #include "figure.hpp"
 #include "geometry_drawing.hpp"
 
+#include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 #include <lagrain/paint.hpp>
 #include <lagrain/run.hpp>

@@ -1,6 +1,7 @@
 #include "figure.hpp"
 #include "page.hpp"
 
+#include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 
 #include <algorithm>

@@ -6,6 +6,7 @@
 #include "figure.hpp"
 #include "report.hpp"
 
+#include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 
 #include <CLI/CLI.hpp>

@@ -1,5 +1,6 @@
 #include "lammps.hpp"
 
+#include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 
 #include <signal.h>

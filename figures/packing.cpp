@@ -1,6 +1,7 @@
 #include "packing.hpp"
 
 #include <lagrain/laguerre3.hpp>
+#include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 #include <lagrain/paint.hpp>
 #include <lagrain/style.hpp>

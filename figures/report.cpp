@@ -4,6 +4,7 @@
 #include "lammps.hpp"
 #include "page.hpp"
 
+#include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 
 #ifdef LAGRAIN_WITH_RENDER

@@ -1,3 +1,4 @@
+#include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 
 #include <algorithm>
