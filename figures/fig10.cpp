@@ -6,6 +6,7 @@
 #include "diagrams.hpp"
 #include "trials.hpp"
 
+#include <lagrain/csv.hpp>
 #include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 #include <lagrain/restitution.hpp>
@@ -304,7 +305,7 @@ std::vector<int> parts(bool quick) {
 }
 
 /// A panel of the inclines: bodies and slopes instead of integrators.
-Diagram incline_panel(const FigureOptions& options, bench::Csv& csv) {
+Diagram incline_panel(const FigureOptions& options, Csv& csv) {
   Diagram diagram = error_diagram("(i) on an incline, Verlet", "velocity, spin", Corner::top_right);
   struct Slope {
     std::string name;
@@ -388,7 +389,7 @@ struct Sweep {
 
 /// @param tell  told the share of the sweep that is done
 Sweep sweep(const Experiment& experiment, std::size_t integrator, const std::vector<int>& steps,
-            const std::function<void(double)>& tell, bench::Csv& csv) {
+            const std::function<void(double)>& tell, Csv& csv) {
   Sweep result{curve(static_cast<int>(integrator), std::string(name_of(kIntegrators[integrator])))};
   std::vector<double> taken, errors;
   for (std::size_t s = 0; s < steps.size(); ++s) {
@@ -412,7 +413,7 @@ Sweep sweep(const Experiment& experiment, std::size_t integrator, const std::vec
 /// Runs all integrators on an experiment, and enters the orders into the table.
 /// @param tell  told the share that is done of each sweep
 Diagram diagram_of(const Experiment& experiment, const std::vector<int>& steps,
-                   const std::function<void(double)>& tell, bench::Csv& csv, Table& orders) {
+                   const std::function<void(double)>& tell, Csv& csv, Table& orders) {
   Diagram diagram = error_diagram(experiment.title, experiment.error, Corner::none);
   std::vector<std::string> row{experiment.title};
   for (std::size_t k = 0; k < kIntegrators.size(); ++k) {
@@ -448,7 +449,7 @@ constexpr const char* kCaption =
 
 FigureResult draw_figure10(const FigureOptions& options) {
   FigureResult result;
-  bench::Csv csv("scene,choice,step[s],step_over_contact_time[-],cost[s/s],error[-]");
+  Csv csv("scene,choice,step[s],step_over_contact_time[-],cost[s/s],error[-]");
   Table orders{"Observed order: slope of the error over the step (by theory, where it applies)",
                {"scene", "symplectic Euler", "velocity Verlet", "fourth order"},
                {}};

@@ -8,6 +8,7 @@
 #include "rigid.hpp"
 #include "trials.hpp"
 
+#include <lagrain/csv.hpp>
 #include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 
@@ -162,7 +163,7 @@ std::vector<double> overlaps(bool quick) {
 }
 
 /// Runs all models of an experiment; enters the errors into the CSV, the slopes into the table.
-Diagram diagram_of(const Experiment& experiment, const FigureOptions& options, bench::Csv& csv,
+Diagram diagram_of(const Experiment& experiment, const FigureOptions& options, Csv& csv,
                    Table& slopes) {
   Diagram diagram = error_diagram(experiment.title, experiment.error, Corner::top_right);
   for (const Model& model : experiment.models) {
@@ -193,7 +194,7 @@ constexpr const char* kCaption =
 
 FigureResult draw_figure11(const FigureOptions& options) {
   FigureResult result;
-  bench::Csv csv("scene,law,overlap_of_impact[r],cost[s/s],error[-]");
+  Csv csv("scene,law,overlap_of_impact[r],cost[s/s],error[-]");
   Table slopes{"How the error falls as processor time grows (slope in the diagrams)",
                {"scene", "law", "slope"},
                {}};

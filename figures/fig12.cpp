@@ -6,6 +6,7 @@
 
 #include <lagrain/all_pairs.hpp>
 #include <lagrain/cell_grid.hpp>
+#include <lagrain/csv.hpp>
 #include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 #include <lagrain/triangulation2.hpp>
@@ -122,7 +123,7 @@ Misses stale_contacts(int count, double ratio, const FigureOptions& options) {
 constexpr double kBound = std::numbers::sqrt2 - 1;
 
 Diagram misses_panel(const std::string& title,
-                     const std::vector<std::pair<std::string, Misses>>& all, bench::Csv& csv) {
+                     const std::vector<std::pair<std::string, Misses>>& all, Csv& csv) {
   Diagram diagram{title,
                   {.x = {.label = "largest displacement since T was built [$r$]", .low = 0.0},
                    .y = {.label = "contacts missed [%]", .low = 0.0},
@@ -242,7 +243,7 @@ std::vector<Cost> measure(const Scene<2>& scene, const std::vector<Way>& all, in
 /// A panel of times over what is varied.
 Diagram cost_panel(const std::string& title, const std::string& axis,
                    const std::vector<std::pair<double, Scene<2>>>& scenes,
-                   const FigureOptions& options, bench::Csv& csv, Cost& worst) {
+                   const FigureOptions& options, Csv& csv, Cost& worst) {
   Diagram diagram{title,
                   {.x = {.label = axis, .log = true},
                    .y = {.label = "time per grain and step [ns]", .log = true},
@@ -306,8 +307,8 @@ constexpr const char* kCaption =
 
 FigureResult draw_figure12(const FigureOptions& options) {
   FigureResult result;
-  bench::Csv missed("panel,sizes,largest_displacement[r],contacts[-],missed[-]");
-  bench::Csv cost(
+  Csv missed("panel,sizes,largest_displacement[r],contacts[-],missed[-]");
+  Csv cost(
       "panel,way,parameter,grains[-],time[ns/grain/step],contacts_per_grain[-],audited[-],"
       "missed[-],energy_residual[-]");
   const int grains = options.quick ? 200 : 1000;

@@ -9,6 +9,7 @@
 #include "measure.hpp"
 #include "predicate_trials.hpp"
 
+#include <lagrain/csv.hpp>
 #include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 #include <lagrain/paint.hpp>
@@ -426,7 +427,7 @@ std::vector<Fact> facts_of(const OrientationMap& map, const std::vector<Row>& ro
 
 /// Signs and times of all trials as CSV.
 std::string csv_of(const std::vector<Row>& rows) {
-  bench::Csv csv(
+  Csv csv(
       "dimension,sites,predicate,calls,wrong,opposite,ties,beyond_intervals,double[ns],"
       "filtered[ns],exact[ns]");
   for (const Row& row : rows) {

@@ -10,6 +10,7 @@
 #include "measure.hpp"
 
 #include <lagrain/audit.hpp>
+#include <lagrain/csv.hpp>
 #include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 #include <lagrain/random.hpp>
@@ -423,8 +424,8 @@ std::string fallen_back(const std::array<std::vector<Updates>, 2>& updates) {
 
 void tell_updates(const std::array<std::vector<Updates>, 2>& measured, const FigureOptions& options,
                   FigureResult& result) {
-  bench::Csv times("dimension,share_moved[-],displacement[mean_radii],update[s],build[s],ratio[-]");
-  bench::Csv ladder(
+  Csv times("dimension,share_moved[-],displacement[mean_radii],update[s],build[s],ratio[-]");
+  Csv ladder(
       "dimension,share_moved[-],displacement[mean_radii],updates,moved,flips,taken_out,unstuck,"
       "put_back,rebuilds,differences_from_build");
   Table table{
@@ -546,7 +547,7 @@ std::string words(const std::array<std::vector<Updates>, 2>& updates,
 
 void tell_runs(const std::array<std::vector<RunCost>, 2>& measured, const FigureOptions& options,
                FigureResult& result) {
-  bench::Csv csv(
+  Csv csv(
       "dimension,skin_factor[-],time_step[contact_times],steps,grain_steps,time_per_grain_step[ns],"
       "refreshes,references_moved,flips,taken_out,unstuck,put_back,rebuilds,shrunk,searched,"
       "contacts_audited,contacts_missed,astray[m],energy_residual[-]");

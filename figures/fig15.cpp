@@ -5,6 +5,7 @@
 #include "diagrams.hpp"
 #include "measure.hpp"
 
+#include <lagrain/csv.hpp>
 #include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 
@@ -142,7 +143,7 @@ std::string bytes(std::size_t number) {
 
 FigureResult draw_figure15(const FigureOptions& options) {
   FigureResult result;
-  bench::Csv csv(
+  Csv csv(
       "dimension[-],normal,friction,per_grain[B],per_near_pair[B],time[ns/grain/step],"
       "contacts_per_grain[-],time_per_contact[ns],energy_residual[-],mean_overlap[-]");
   Table table{"What a model costs",

@@ -11,6 +11,7 @@
 #include "rigid.hpp"
 #include "trials.hpp"
 
+#include <lagrain/csv.hpp>
 #include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 
@@ -488,7 +489,7 @@ Table cradle_table(int phases, const FigureOptions& options) {
   return table;
 }
 
-void add_row(bench::Csv& csv, const Contest::Panel& panel, const Point& point) {
+void add_row(Csv& csv, const Contest::Panel& panel, const Point& point) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (const auto* box2d = std::get_if<Box2dSettings>(&point.settings)) {
     csv.row(panel.title, panel.error, "Box2D", box2d->time_step, box2d->velocity_iterations,
@@ -510,7 +511,7 @@ struct Judged {
 /// @param tell  told the share that is done and the settings that come next
 Judged run_contest(const Contest& contest,
                    const std::function<void(double, const EngineSettings&)>& tell,
-                   bench::Csv& csv) {
+                   Csv& csv) {
   Judged judged;
   for (const Contest::Panel& panel : contest.panels) {
     judged.panels.push_back(error_diagram(panel.title, panel.error, Corner::none));
@@ -606,7 +607,7 @@ std::vector<Fact> facts_of(const std::string& orders) {
 
 FigureResult draw_figure16(const FigureOptions& options) {
   FigureResult result;
-  bench::Csv csv(
+  Csv csv(
       "scene,judged_by,engine,time_step[s],velocity_iterations,position_iterations,stiffness[N/m],"
       "step_refinement[-],cost[s/s],error[-]");
   Table costs{"Processor time per simulated second of the cheapest setting within an error",

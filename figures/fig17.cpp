@@ -10,6 +10,7 @@
 #include "measure.hpp"
 #include "rigid.hpp"
 
+#include <lagrain/csv.hpp>
 #include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 
@@ -334,7 +335,7 @@ class Report {
     return "Box2D " + std::to_string(escaped_[1]) + ", lagrain " + std::to_string(escaped_[0]);
   }
   const Table& table() const { return table_; }
-  const bench::Csv& csv() const { return csv_; }
+  const Csv& csv() const { return csv_; }
 
  private:
   const FigureOptions& options_;
@@ -345,7 +346,7 @@ class Report {
                 "kinetic energy [m g r]", "force on walls over weight", "integrals",
                 "processor s per simulated s"},
                {}};
-  bench::Csv csv_{"scene,engine,quantity,value"};
+  Csv csv_{"scene,engine,quantity,value"};
 };
 
 // ---- Panels ------------------------------------------------------------------------------------

@@ -7,6 +7,7 @@
 #include "hard_cases.hpp"
 #include "measure.hpp"
 
+#include <lagrain/csv.hpp>
 #include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 #include <lagrain/run.hpp>
@@ -146,13 +147,13 @@ class HardCases {
            " contacts missed, " + std::to_string(o.lost) + " grains lost";
   }
 
-  void save(const std::string& name, const bench::Csv& csv) {
+  void save(const std::string& name, const Csv& csv) {
     write_file(options_.out / (name + ".csv"), csv.text());
     result_.downloads.push_back(name + ".csv");
   }
 
   void write_table() {
-    bench::Csv csv("case,danger,happened,number");
+    Csv csv("case,danger,happened,number");
     const auto plain = [](std::string text) {  // a cell is quoted already
       std::erase(text, '"');
       return text;
@@ -181,7 +182,7 @@ class HardCases {
   }
 
   void towers() {
-    bench::Csv csv("height[-],step[-],largest_force_error[-],theory[-],last_bit[-]");
+    Csv csv("height[-],step[-],largest_force_error[-],theory[-],last_bit[-]");
     Plot plot{.x = {.label = "steps", .log = true},
               .y = {.label = "largest error of a contact force", .log = true, .low = 1e-16},
               .series = {},
@@ -273,7 +274,7 @@ class HardCases {
   }
 
   void far() {
-    bench::Csv csv("distance[r],overlap_error[r],bound[r],last_bit[r],force_error[weight]");
+    Csv csv("distance[r],overlap_error[r],bound[r],last_bit[r],force_error[weight]");
     Series error = curve(0, "difference of overlaps"), bound = series_style(1),
            bit = series_style(2);
     bound.name = "its bound";
@@ -316,7 +317,7 @@ class HardCases {
   // ---- Speed and step --------------------------------------------------------------------------
 
   void fast() {
-    bench::Csv csv("way_per_step[r],bounced[-],refused[-],unseen[-],unseen_by_theory[-],shots[-]");
+    Csv csv("way_per_step[r],bounced[-],refused[-],unseen[-],unseen_by_theory[-],shots[-]");
     Series bounced = curve(0, "bounced"), refused = curve(1, "refused by the run"),
            unseen = curve(2, "passed unseen");
     FastGrain all;  // of all shots
@@ -352,7 +353,7 @@ class HardCases {
   }
 
   void steps() {
-    bench::Csv csv("step[safe_steps],energy_error[-],overlap_error[-]");
+    Csv csv("step[safe_steps],energy_error[-],overlap_error[-]");
     Series energy = curve(0, "energy"), overlap = curve(1, "deepest overlap");
     std::string number;
     for (const double x : {0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0}) {
@@ -383,7 +384,7 @@ class HardCases {
   // ---- Long runs -------------------------------------------------------------------------------
 
   void piles() {
-    bench::Csv csv("friction,time[s],kinetic[J],top[m],rounding_floor[J]");
+    Csv csv("friction,time[s],kinetic[J],top[m],rounding_floor[J]");
     Plot plot{.x = {.label = "time [s]"},
               .y = {.label = "kinetic energy [J]", .log = true, .low = 1e-25, .high = 1e9},
               .series = {},
@@ -419,7 +420,7 @@ class HardCases {
 
   void gas() {
     const Gas r = elastic_gas(lengths_.gas_grain_steps, check_stop_);
-    bench::Csv csv("grain_steps[-],energy_drift[-],random_walk[-]");
+    Csv csv("grain_steps[-],energy_drift[-],random_walk[-]");
     Series drift = series_style(0);
     drift.name = "energy";
     const double end = r.samples.back().grain_steps;

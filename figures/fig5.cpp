@@ -7,6 +7,7 @@
 
 #include "figure.hpp"
 
+#include <lagrain/csv.hpp>
 #include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 #include <lagrain/paint.hpp>
@@ -159,23 +160,18 @@ class Recorder {
 
   /// The series as CSV; also what is left of an interrupted run.
   void write_series() const {
-    std::string force = "time[s],slab_force[N]\n";
+    Csv force("time[s],slab_force[N]");
     for (std::size_t k = 0; k < record_.time.size(); ++k) {
-      force += shortest(record_.time[k]) + "," + shortest(record_.slab_force[k]) + "\n";
+      force.row(record_.time[k], record_.slab_force[k]);
     }
-    write_file(options_.out / "fig5_slab_force.csv", force);
-    std::string energy =
-        "time[s],kinetic[J],gravity[J],elastic[J],dashpot[J],friction[J],residual[J]\n";
+    write_file(options_.out / "fig5_slab_force.csv", force.text());
+    Csv energy("time[s],kinetic[J],gravity[J],elastic[J],dashpot[J],friction[J],residual[J]");
     for (std::size_t k = 0; k < record_.ledger.size(); ++k) {
       const Ledger& l = record_.ledger[k];
-      energy += shortest(record_.ledger_time[k]);
-      for (const double value : {l.kinetic, l.gravity, l.elastic, l.dashpot, l.friction,
-                                 residual(l, record_.ledger.front())}) {
-        energy += "," + shortest(value);
-      }
-      energy += "\n";
+      energy.row(record_.ledger_time[k], l.kinetic, l.gravity, l.elastic, l.dashpot, l.friction,
+                 residual(l, record_.ledger.front()));
     }
-    write_file(options_.out / "fig5_energy.csv", energy);
+    write_file(options_.out / "fig5_energy.csv", energy.text());
   }
 
  private:

@@ -6,6 +6,7 @@
 
 #include "packing.hpp"
 
+#include <lagrain/csv.hpp>
 #include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 #include <lagrain/paint.hpp>
@@ -157,13 +158,13 @@ Comparison comparison_of(const Figure6& figure, std::size_t k, bool quick) {
 }
 
 void write_friction_table(const Figure6& figure, const std::filesystem::path& file) {
-  std::string table = "friction[-],density_by_piston[-],density_within[-],coordination[-]\n";
+  Csv table("friction[-],density_by_piston[-],density_within[-],coordination[-]");
   const std::span<const Packing> swept = figure.swept();
   for (std::size_t k = 0; k < swept.size(); ++k) {
-    table += shortest(figure.frictions[k]) + "," + shortest(swept[k].final_density()) + "," +
-             shortest(swept[k].bulk) + "," + shortest(swept[k].statistics.coordination) + "\n";
+    table.row(figure.frictions[k], swept[k].final_density(), swept[k].bulk,
+              swept[k].statistics.coordination);
   }
-  write_file(file, table);
+  write_file(file, table.text());
 }
 
 std::string caption_of(const Figure6& figure) {

@@ -6,6 +6,7 @@
 #include "figure.hpp"
 #include "geometry_drawing.hpp"
 
+#include <lagrain/csv.hpp>
 #include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 #include <lagrain/paint.hpp>
@@ -85,17 +86,17 @@ Figure8 make_figure8(const FigureOptions& options) {
   figure.run = make_run(read_scene<3>(figure.file));
   const Run<3>& run = *figure.run;
   VideoWriter video(options.out / "fig8.mp4", 25);
-  std::string track = "time[s],large_grain_bottom[m]\n";
+  Csv track("time[s],large_grain_bottom[m]");
   double next_frame = kFilmStart;
   while (!run.finished()) {
     figure.run->step();
     if (options.stop()) {
-      write_file(options.out / "fig8_large_grain.csv", track);
+      write_file(options.out / "fig8_large_grain.csv", track.text());
       throw Interrupted();
     }
     if (run.steps() % 100 == 0) {
       options.progress(run.time() / run.scene().duration, "around a large grain");
-      track += shortest(run.time()) + "," + shortest(figure.bottom()) + "\n";
+      track.row(run.time(), figure.bottom());
     }
     if (figure.kept.size() < kTimes.size() && run.time() >= kTimes[figure.kept.size()]) {
       figure.kept.push_back(run.positions());
@@ -106,7 +107,7 @@ Figure8 make_figure8(const FigureOptions& options) {
     }
   }
   figure.film = video.finish();
-  write_file(options.out / "fig8_large_grain.csv", track);
+  write_file(options.out / "fig8_large_grain.csv", track.text());
   return figure;
 }
 

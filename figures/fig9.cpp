@@ -7,6 +7,7 @@
 
 #include "packing.hpp"
 
+#include <lagrain/csv.hpp>
 #include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 #include <lagrain/paint.hpp>
@@ -236,11 +237,11 @@ std::vector<AxisRow> axis_rows(const std::vector<Packing>& packings, const Close
 /// Edges of the triangulation per site, over the number of sites.
 struct EdgeCounts {
   Series scenes, lines;  ///< of the packings; of two lines that cross
-  std::string table;     ///< the same as CSV
+  Csv table;             ///< the same for a file
 };
 
 EdgeCounts count_edges(const std::vector<Packing>& packings, const Closest& closest, bool quick) {
-  EdgeCounts counts{series_style(0), series_style(1), "sites,edges_per_site[-],what\n"};
+  EdgeCounts counts{series_style(0), series_style(1), Csv("sites,edges_per_site[-],what")};
   counts.scenes.name = "packings";
   counts.scenes.marker = Marker::disc;
   counts.scenes.width = 0;
@@ -249,7 +250,7 @@ EdgeCounts count_edges(const std::vector<Packing>& packings, const Closest& clos
   const auto note = [&](Series& series, double n, double edges, const std::string& what) {
     series.x.push_back(n);
     series.y.push_back(edges);
-    counts.table += shortest(n) + "," + shortest(edges) + ",\"" + what + "\"\n";
+    counts.table.row(n, edges, what);
   };
   const auto note_packing = [&](const Packing& p, const std::string& what) {
     note(counts.scenes, static_cast<double>(p.radius.size()), p.edges_per_site, what);
@@ -289,7 +290,7 @@ FigureResult draw_figure9(const FigureOptions& options) {
   const Closest closest = run_closest(options);
   const EdgeCounts counts = count_edges(packings, closest, options.quick);
   const DisplayList list = page(closest, counts, axis_rows(packings, closest), options.quick);
-  write_file(options.out / "fig9_edges.csv", counts.table);
+  write_file(options.out / "fig9_edges.csv", counts.table.text());
   paint_png(list, options.out / "fig9.png", 300);
   paint_pdf(list, options.out / "fig9.pdf");
 

@@ -3,6 +3,7 @@
 #include <lagrain/all_pairs.hpp>
 #include <lagrain/audit.hpp>
 #include <lagrain/compiled_kernels.hpp>
+#include <lagrain/csv.hpp>
 #include <lagrain/cundall_strack.hpp>
 #include <lagrain/hooke.hpp>
 #include <lagrain/observe.hpp>
@@ -12,7 +13,6 @@
 #include <lagrain/triangulation_neighbourhood.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -208,18 +208,12 @@ Flight fly(int count, std::uint64_t seed, double duration, double interval) {
 
 void write_csv(const std::filesystem::path& path, const std::string& names,
                const std::vector<std::vector<double>>& rows) {
-  std::string text = names;
-  text += '\n';
+  Csv csv(names);
   for (const std::vector<double>& row : rows) {
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      char buffer[32];
-      const auto end = std::to_chars(buffer, buffer + sizeof buffer, row[k]).ptr;
-      if (k > 0) text += ',';
-      text.append(buffer, end);
-    }
-    text += '\n';
+    for (const double value : row) csv.number(value);
+    csv.end();
   }
-  write_file(path, text);
+  write_file(path, csv.text());
 }
 
 }  // namespace lagrain::figures

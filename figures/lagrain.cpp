@@ -125,7 +125,7 @@ int run_command(const RunArguments& arguments) {
 
 struct FigureArguments {
   std::vector<int> numbers;
-  std::string out = "figures";
+  std::string out = "gallery";
   bool quick = false;
 };
 
@@ -149,13 +149,21 @@ void draw(const std::vector<int>& numbers, const FigureOptions& options, Progres
   });
 }
 
+/// A program run from where it was built finds the scenes of the sources, an installed one those
+/// that were installed with it, wherever that is.
+fs::path scenes_folder() {
+  if (fs::is_directory(LAGRAIN_SCENES)) return LAGRAIN_SCENES;
+  std::error_code unknown;
+  const fs::path program = fs::read_symlink("/proc/self/exe", unknown);
+  return program.parent_path() / LAGRAIN_SCENES_FROM_PROGRAM;
+}
+
 FigureOptions options_of(const FigureArguments& arguments) {
   FigureOptions options;
   options.out = arguments.out;
   options.quick = arguments.quick;
   options.stop = stopping;
-  // A program run from where it was built finds the sources; an installed one its data.
-  options.scenes = fs::is_directory(LAGRAIN_SCENES) ? LAGRAIN_SCENES : LAGRAIN_INSTALLED_SCENES;
+  options.scenes = scenes_folder();
   return options;
 }
 

@@ -1,6 +1,5 @@
 #include "measure.hpp"
 
-#include <lagrain/numbers.hpp>
 #include <lagrain/scene.hpp>
 
 #include <ctime>
@@ -54,10 +53,6 @@ double observed_order(std::span<const double> x, std::span<const double> y) {
   }
   return n < 2 ? std::numeric_limits<double>::quiet_NaN()
                : (n * sxy - sx * sy) / (n * sxx - sx * sx);
-}
-
-std::string Csv::cell(double number) {
-  return std::isnan(number) ? "" : shortest(number);
 }
 
 }  // namespace lagrain::bench

@@ -1,5 +1,6 @@
 #include "packing.hpp"
 
+#include <lagrain/csv.hpp>
 #include <lagrain/laguerre3.hpp>
 #include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
@@ -105,13 +106,11 @@ double work_of(const Scene<3>& scene) {
 
 /// One row per sample.
 std::string density_csv(const std::vector<Packing>& packings) {
-  std::string text = "packing,time[s],density[-]\n";
+  Csv csv("packing,time[s],density[-]");
   for (const Packing& p : packings) {
-    for (std::size_t k = 0; k < p.time.size(); ++k) {
-      text += "\"" + p.name + "\"," + shortest(p.time[k]) + "," + shortest(p.density[k]) + "\n";
-    }
+    for (std::size_t k = 0; k < p.time.size(); ++k) csv.row(p.name, p.time[k], p.density[k]);
   }
-  return text;
+  return csv.text();
 }
 
 }  // namespace
@@ -224,12 +223,13 @@ std::pair<double, int> bulk_density(const Columns<3>& position, const Eigen::Vec
 }
 
 std::string packing_csv(const Packing& packing) {
-  std::string text = "x[m],y[m],z[m],radius[m]\n";
+  Csv csv("x[m],y[m],z[m],radius[m]");
   for (Eigen::Index i = 0; i < packing.position.cols(); ++i) {
-    for (int axis = 0; axis < 3; ++axis) text += shortest(packing.position(axis, i)) + ",";
-    text += shortest(packing.radius[i]) + "\n";
+    csv.vector(packing.position.col(i));
+    csv.number(packing.radius[i]);
+    csv.end();
   }
-  return text;
+  return csv.text();
 }
 
 Series density_series(const Packing& packing, int index, double from) {

@@ -4,6 +4,7 @@
 #include "lammps.hpp"
 #include "page.hpp"
 
+#include <lagrain/csv.hpp>
 #include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 
@@ -66,20 +67,16 @@ const std::vector<Column>& columns() {
   return all;
 }
 
-std::string quoted(const std::string& text) {
-  return "\"" + text + "\"";
-}
-
 /// The beginning of a row: which scene and who.
-std::string row_start(const SceneSpeed& scene, const Contender& contender) {
-  return quoted(scene.group) + "," + quoted(scene.name) + "," + std::to_string(scene.dimension) +
-         "," + std::to_string(scene.grains) + "," + quoted(contender.name);
+void begin_row(Csv& csv, const SceneSpeed& scene, const Contender& contender) {
+  csv.word(scene.group);
+  csv.word(scene.name);
+  csv.number(scene.dimension);
+  csv.number(scene.grains);
+  csv.word(contender.name);
 }
 constexpr const char* kRowHead = "group,scene,dimension[-],grains[-],contender";
 
-std::string number_or_nothing(double value) {
-  return std::isnan(value) ? "" : shortest(value);
-}
 std::string cell(double value, int digits) {
   return std::isnan(value) ? "" : rounded(value, digits);
 }
@@ -383,50 +380,52 @@ class Report {
 }  // namespace
 
 std::string speed_csv(const SpeedResults& results) {
-  std::string text = std::string(kRowHead) + ",steps[-],time_step[s]";
+  std::string head = std::string(kRowHead) + ",steps[-],time_step[s]";
   for (const Column& column : columns()) {
-    text += ',';
-    text += column.name;
+    head += ',';
+    head += column.name;
   }
-  text += "\n";
+  Csv csv(head);
   for (const SceneSpeed& scene : results.scenes) {
     for (const Contender& contender : scene.contenders) {
-      text += row_start(scene, contender) + "," + std::to_string(scene.steps) + "," +
-              shortest(scene.time_step);
-      for (const Column& column : columns()) {
-        text += ',';
-        text += number_or_nothing(column.value(scene, contender));
-      }
-      text += "\n";
+      begin_row(csv, scene, contender);
+      csv.number(scene.steps);
+      csv.number(scene.time_step);
+      for (const Column& column : columns()) csv.number(column.value(scene, contender));
+      csv.end();
     }
   }
-  return text;
+  return csv.text();
 }
 
 std::string rounds_csv(const SpeedResults& results) {
-  std::string text = std::string(kRowHead) + ",round[-],time[ns/grain/step]\n";
+  Csv csv(std::string(kRowHead) + ",round[-],time[ns/grain/step]");
   for (const SceneSpeed& scene : results.scenes) {
     for (const Contender& contender : scene.contenders) {
       for (std::size_t round = 0; round < contender.ns.size(); ++round) {
-        text += row_start(scene, contender) + "," + std::to_string(round + 1) + "," +
-                shortest(contender.ns[round]) + "\n";
+        begin_row(csv, scene, contender);
+        csv.number(round + 1);
+        csv.number(contender.ns[round]);
+        csv.end();
       }
     }
   }
-  return text;
+  return csv.text();
 }
 
 std::string phases_csv(const SpeedResults& results) {
-  std::string text = std::string(kRowHead) + ",phase,time[ns/grain/step]\n";
+  Csv csv(std::string(kRowHead) + ",phase,time[ns/grain/step]");
   for (const SceneSpeed& scene : results.scenes) {
     for (const Contender& contender : scene.contenders) {
       for (const Phase& phase : contender.phases) {
-        text += row_start(scene, contender) + "," + quoted(phase.name) + "," + shortest(phase.ns) +
-                "\n";
+        begin_row(csv, scene, contender);
+        csv.word(phase.name);
+        csv.number(phase.ns);
+        csv.end();
       }
     }
   }
-  return text;
+  return csv.text();
 }
 
 void write_speed_report(const FigureOptions& options) {
