@@ -55,7 +55,9 @@ constexpr float kMapReach = 1.02F;  // half the width of a shadow map; the scene
 constexpr int kSkyLights = 4, kSkyLightsAlone = 8;
 static_assert(std::max(kSkyLights, kSkyLightsAlone) < source::kMostLights);
 
-// Sides of the tiles of the sieve, in pixels of the picture and in texels of a shadow map.
+// Sides of the tiles of the sieve, in pixels of the picture and in texels of a shadow map. Any size
+// gives the same picture. Half or twice of these changes the time by a tenth at most (6,859 balls
+// on 800 x 800 pixels).
 constexpr int kPictureTile = 4, kMapTile = 2;
 
 float from_srgb(std::uint8_t value) {
