@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The target `docs`: Doxygen's pages of the public headers and the READMEs. A public name without a
 # comment is an error, and so is a comment or a link that Doxygen cannot follow.
 find_package(Doxygen QUIET)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <lagrain/laguerre3.hpp>
 
 #include <lagrain/check.hpp>
@@ -21,8 +22,8 @@ struct HalfSpace {
   int beyond;
 };
 
-/// Keeps the part of a convex polygon in a half-space (Sutherland & Hodgman, Commun. ACM 17 (1974)
-/// 32).
+/// Keeps the part of a convex polygon in a half-space (Sutherland & Hodgman, Commun. ACM 17
+/// (1974) 32).
 void cut(Polygon& polygon, Polygon& scratch, const HalfSpace& keep) {
   scratch.clear();
   for (std::size_t k = 0; k < polygon.size(); ++k) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <lagrain/predicates3.hpp>
 
 #include "exact_sign.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <lagrain/triangulation3.hpp>
 
 #include <algorithm>
@@ -19,12 +20,12 @@ std::array<int, 3> least_first(int a, int b, int c) {
 /// Triangulates a cavity anew: the regular triangulation of `sites` alone replaces the cells of
 /// `hole` if it holds every facet of the hole's boundary. Sites without a cell then are hidden.
 ///
-/// If T was regular but for the cells of the hole, T comes out regular; in particular a site whose
-/// star is the hole can be taken out so. In a T that is folded the hole may be anything, and
-/// nothing is taken on trust: it is refilled only if its boundary is one sphere. The vertex at
-/// infinity included, T and the small triangulation are 3-spheres, which a sphere parts into two
-/// balls (Alexander, PNAS 10 (1924) 6). So a ball takes the place of a ball, and T stays a
-/// 3-sphere.
+/// If T was regular but for the cells of the hole, T comes out regular; in particular a site
+/// whose star is the hole can be taken out so. In a T that is folded the hole may be anything,
+/// and nothing is taken on trust: it is refilled only if its boundary is one sphere. The
+/// vertex at infinity included, T and the small triangulation are 3-spheres, which a sphere
+/// parts into two balls (Alexander, PNAS 10 (1924) 6). So a ball takes the place of a ball,
+/// and T stays a 3-sphere.
 /// @param hole   cells that hang together
 /// @param sites  sites to be used, all of the boundary among them, in increasing order
 /// @param away   see insert_all
@@ -56,8 +57,8 @@ Triangulation<3>& Triangulation<3>::triangulate_alone(std::span<const int> sites
   return small;
 }
 
-/// Lists the facets between the hole and what is outside in facets_, by their numbers in the small
-/// triangulation.
+/// Lists the facets between the hole and what is outside in facets_, by their numbers in the
+/// small triangulation.
 void Triangulation<3>::list_facets(std::span<const int> hole, std::span<const int> sites) {
   for (std::size_t k = 0; k < sites.size(); ++k) site_note_[index(sites[k])] = static_cast<int>(k);
   const auto small_id = [&](int corner) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <lagrain/triangulation3.hpp>
 
 #include "updates.hpp"
@@ -62,8 +63,8 @@ bool Triangulation<3>::locally_regular(int corner) const {
   return (apex | opposite) < 0 || !conflict(corner >> 2, opposite);
 }
 
-/// Chooses the point that the hull is seen from: the mean of the visible sites, auxiliary ones
-/// included.
+/// Chooses the point that the hull is seen from: the mean of the visible sites, auxiliary
+/// ones included.
 void Triangulation<3>::choose_middle() {
   // Where sums of coordinates overflow they are made of smaller shares.
   for (const double share : {1.0, 0x1p-64}) {
@@ -373,8 +374,8 @@ void Triangulation<3>::unpinch(std::vector<int>& cavity) {
   }
 }
 
-/// Flips until T is regular, given that it is so but for the facets of the cells in around_ and
-/// touched_.
+/// Flips until T is regular, given that it is so but for the facets of the cells in around_
+/// and touched_.
 bool Triangulation<3>::flip_to_regular() {
   start_flips();
   around_.insert(around_.end(), touched_.begin(), touched_.end());

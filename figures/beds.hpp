@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Beds of grains for the benchmark and the speed report: settled, of like and of unlike sizes,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "box2d_world.hpp"
 
 #include <box2d/box2d.h>
@@ -13,12 +14,8 @@ namespace lagrain::figures {
 
 namespace {
 
-b2Vec2 single(const Vec<2>& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y())};
-}
-Vec<2> twice(const b2Vec2& v) {
-  return {static_cast<double>(v.x), static_cast<double>(v.y)};
-}
+b2Vec2 single(const Vec<2>& v) { return {static_cast<float>(v.x()), static_cast<float>(v.y())}; }
+Vec<2> twice(const b2Vec2& v) { return {static_cast<double>(v.x), static_cast<double>(v.y)}; }
 
 /// What a surface is like; Box2D mixes friction as sqrt(ab) and restitution as max(a, b), so equal
 /// surfaces give the scene's numbers.
@@ -212,9 +209,7 @@ Vec<2> Box2dWorld::wall_force(int wall) const {
   return sum;
 }
 
-double Box2dWorld::slop() const {
-  return static_cast<double>(b2_linearSlop) * units_.length;
-}
+double Box2dWorld::slop() const { return static_cast<double>(b2_linearSlop) * units_.length; }
 
 std::string box2d_version() {
   return std::to_string(b2_version.major) + "." + std::to_string(b2_version.minor) + "." +

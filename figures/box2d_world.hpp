@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Box2D 2.4 as an engine for our scenes. Nothing of Box2D shows in this header.

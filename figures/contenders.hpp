@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Neighbourhoods that exist to be compared with: an oracle that is handed the contacts, and a

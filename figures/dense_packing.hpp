@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Dense random packings for the report: grains that nearly touch, as they do at rest.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Two engines for one scene of discs, Box2D's and ours, asked the same questions in SI.
@@ -51,8 +52,7 @@ struct Box2dSettings {
 
 using EngineSettings = std::variant<LagrainSettings, Box2dSettings>;
 
-/// An engine at time 0 of a scene, on one thread. Both take the grains where make_run puts
-/// them.
+/// An engine at time 0 of a scene, on one thread. Both take the grains where make_run puts them.
 /// @throws SceneError as make_run; ContractError where Box2D cannot run the scene
 std::unique_ptr<Engine> make_engine(const Scene<2>& scene, const EngineSettings& settings);
 
@@ -74,8 +74,8 @@ inline constexpr double kGameGravity = 10;  ///< [m/s^2]
 /// @throws Interrupted, and SimulationError as step()
 double advance_to(Engine& engine, double t, const FigureOptions& options);
 
-/// Overlaps by a search of its own, which knows places and radii alone; walls are those of the
-/// scene.
+/// Overlaps by a search of its own, which knows places and radii alone; walls are those of
+/// the scene.
 struct Overlaps {
   double mean = 0;          ///< of touching pairs, walls included, over the smaller radius [-]
   double largest = 0;       ///< [-]

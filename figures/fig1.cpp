@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figure 1 of the paper: 24 discs of different sizes and the edges of their regular triangulation,
 // weight r^2, along which contacts are looked for. Here the discs have come to rest in an open box,
 // and the edges that carry a contact are marked.

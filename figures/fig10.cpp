@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figure 10 (report): what an integrator and its step cost, and the error that they buy.
 //
 // Every panel is a scene whose answer is known: a closed form, or the same scene with steps so
@@ -33,9 +34,7 @@ constexpr std::array<IntegratorModel, 3> kIntegrators{IntegratorModel::symplecti
                                                       IntegratorModel::fourth_order};
 
 /// How long two trial discs touch [s]; the steps of the sweep are fractions of it.
-double contact_time() {
-  return pi * std::sqrt(trial_mass<2>() / 2 / kK);
-}
+double contact_time() { return pi * std::sqrt(trial_mass<2>() / 2 / kK); }
 
 /// What is tried in every panel.
 struct Choice {
@@ -52,9 +51,7 @@ struct Experiment {
   std::function<Outcome(const Choice&)> run;
 };
 
-Wall<2> floor_at(double y) {
-  return Wall<2>::half_space("floor", {0, y}, {0, 1});
-}
+Wall<2> floor_at(double y) { return Wall<2>::half_space("floor", {0, y}, {0, 1}); }
 
 /// Free flight; error of the place, of the height fallen.
 Outcome free_flight(const Choice& choice, const FigureOptions& options) {
@@ -131,9 +128,7 @@ Eigen::Matrix<double, 6, 1> oblique(const Choice& choice, double phase_gap,
 }
 
 /// Steps of a converged reference.
-double fine_step() {
-  return contact_time() / 20000;
-}
+double fine_step() { return contact_time() / 20000; }
 
 Outcome oblique_error(const Choice& choice, const FigureOptions& options) {
   static const Eigen::Matrix<double, 6, 1> exact = [&] {

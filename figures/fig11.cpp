@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figure 11 (report): how stiff a contact must be for the error that one can bear, and what that
 // costs, for the linear spring and for Hertz's law.
 //

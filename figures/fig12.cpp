@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figure 12 (report): how far grains may move before a triangulation that stands still misses
 // contacts, and what each way of knowing the neighbours costs.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figure 13 (report): predicates, and what plain doubles get wrong.
 //
 // (a), (b) The classical picture of Kettner, Mehlhorn, Pion, Schirra & Yap (Comput. Geom. 40 (2008)
@@ -39,9 +40,7 @@ constexpr std::uint64_t kSeed = 13;
 constexpr double kMapWidth = 0.72 * kMapSide;  // three pixels for a double at 300 dpi [pt]
 
 /// The number of calls that are timed: so many that no processor learns their signs by heart.
-int calls(bool quick) {
-  return quick ? 800 : 8000;
-}
+int calls(bool quick) { return quick ? 800 : 8000; }
 
 enum Way { kPlain, kFiltered, kExact };
 using Times = std::array<double, 3>;  ///< of a call, by way [ns]
@@ -141,13 +140,9 @@ void measure(std::vector<Row>& rows, int turns, const StopCheck& check_stop) {
   }
 }
 
-double percent(int part, int whole) {
-  return 100.0 * part / whole;
-}
+double percent(int part, int whole) { return 100.0 * part / whole; }
 
-double wrong_share(const Trial& trial) {
-  return percent(trial.tally.wrong, trial.tally.queries);
-}
+double wrong_share(const Trial& trial) { return percent(trial.tally.wrong, trial.tally.queries); }
 
 // ---- Pictures ----------------------------------------------------------------------------------
 
@@ -365,24 +360,14 @@ std::string range_of(const std::vector<Row>& rows, const std::function<bool(cons
   return from == to ? from : from + " to " + to;
 }
 
-bool is_usual(const Row& row) {
-  return row.sites == "random" || row.sites.starts_with("packing");
-}
-bool is_sorted(const Row& row) {
-  return row.sites.ends_with("sorted by sign");
-}
+bool is_usual(const Row& row) { return row.sites == "random" || row.sites.starts_with("packing"); }
+bool is_sorted(const Row& row) { return row.sites.ends_with("sorted by sign"); }
 bool is_on_lattice(const Row& row) {
   return row.sites.ends_with("lattice") || row.sites == "face-centred cubic";
 }
-bool is_disturbed(const Row& row) {
-  return row.sites.ends_with("off by 1e-6");
-}
-double filtered_cost(const Trial& trial) {
-  return trial.cost(kFiltered);
-}
-double exact_cost(const Trial& trial) {
-  return trial.cost(kExact);
-}
+bool is_disturbed(const Row& row) { return row.sites.ends_with("off by 1e-6"); }
+double filtered_cost(const Trial& trial) { return trial.cost(kFiltered); }
+double exact_cost(const Trial& trial) { return trial.cost(kExact); }
 
 std::string caption_of(const std::vector<Row>& rows) {
   return "(a), (b) The side of a line on which doubles see the points of a grid of neighbouring "

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figure 14 (report): moving the triangulation by flips against building it anew.
 //
 // (a), (b) Time of an update over that of a build, against the displacement. (c), (d) What an
@@ -44,9 +45,7 @@ namespace {
 /// wants to stop.
 using Tell = std::function<void(const std::string& doing)>;
 
-std::string of_dimension(int dim) {
-  return dim == 2 ? "discs" : "spheres";
-}
+std::string of_dimension(int dim) { return dim == 2 ? "discs" : "spheres"; }
 
 // ---- One update --------------------------------------------------------------------------------
 
@@ -249,8 +248,8 @@ struct RunCost {
   double nanoseconds() const { return 1e9 * processor_time / grain_steps; }
 };
 
-/// What the ledger cannot account for, of the larger of what is stored and what has been
-/// dissipated.
+/// What the ledger cannot account for, of the larger of what is stored and what has
+/// been dissipated.
 template <int Dim>
 double relative_residual(const Run<Dim>& run) {
   const Ledger end = run.ledger();
@@ -258,9 +257,7 @@ double relative_residual(const Run<Dim>& run) {
          std::max(end.kinetic + end.elastic, end.dashpot + end.friction);
 }
 
-int shaken_count(bool quick) {
-  return quick ? 200 : 500;
-}
+int shaken_count(bool quick) { return quick ? 200 : 500; }
 
 /// Loose grains in a box without a lid that shakes with four times gravity: they are thrown, mixed
 /// and compressed.

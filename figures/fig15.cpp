@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figure 15 (report): what each piece of physics costs, in bytes and nanoseconds.
 //
 // One bed is brought to rest with the fullest model; every model settles anew from there.
@@ -135,9 +136,7 @@ std::vector<Row> measure(int count, const FigureOptions& options) {
   return rows;
 }
 
-std::string bytes(std::size_t number) {
-  return std::to_string(number);
-}
+std::string bytes(std::size_t number) { return std::to_string(number); }
 
 }  // namespace
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figure 16 (report): Box2D and lagrain on scenes of few discs whose rigid answer is known, error
 // against processor time.
 //
@@ -45,9 +46,7 @@ struct Contest {
   std::function<std::vector<Outcome>(const EngineSettings&)> run;  ///< one per panel
 };
 
-Wall<2> ground() {
-  return Wall<2>::half_space("floor", {0, 0}, {0, 1});
-}
+Wall<2> ground() { return Wall<2>::half_space("floor", {0, 0}, {0, 1}); }
 
 double root_mean_square(const std::vector<double>& values) {
   double sum = 0;
@@ -510,8 +509,7 @@ struct Judged {
 /// Runs both engines over their sweeps, in turns.
 /// @param tell  told the share that is done and the settings that come next
 Judged run_contest(const Contest& contest,
-                   const std::function<void(double, const EngineSettings&)>& tell,
-                   Csv& csv) {
+                   const std::function<void(double, const EngineSettings&)>& tell, Csv& csv) {
   Judged judged;
   for (const Contest::Panel& panel : contest.panels) {
     judged.panels.push_back(error_diagram(panel.title, panel.error, Corner::none));

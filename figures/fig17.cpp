@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figure 17 (report): Box2D and lagrain in bulk, by integrals, because single paths of many discs
 // are chaotic: what a heap looks like, how deep discs overlap at rest, how fast a hopper empties.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figure 18 (report): hard cases, and what happens to them.
 //
 // One row of the table per case, with the number that decides it; panels for those where a number
@@ -40,9 +41,7 @@ Lengths lengths(bool quick) {
   return {800000, 150000, 10000000, 30000, 100, 64, {1, 1e2, 1e4, 1e6, 1e8}};
 }
 
-std::string percent(double share) {
-  return rounded(100 * share, 2) + " %";
-}
+std::string percent(double share) { return rounded(100 * share, 2) + " %"; }
 
 /// An error message, quoted, without the remedy or the condition that follows it.
 std::string quoted(const std::string& message) {
@@ -495,8 +494,6 @@ class HardCases {
 
 }  // namespace
 
-FigureResult draw_figure18(const FigureOptions& options) {
-  return HardCases(options).draw();
-}
+FigureResult draw_figure18(const FigureOptions& options) { return HardCases(options).draw(); }
 
 }  // namespace lagrain::figures

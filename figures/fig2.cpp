@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figure 2 of the paper: discs S1 ... S4, their Laguerre cells L1 ... L4, the dual edges, and the
 // power P1(x) as the square of the tangent from x to S1. Beside it the misprint of Theorem 2.1,
 // "weights are the square roots of the radii": four discs for which the triangulation with weight

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figure 3 of the paper: Laguerre cells and the regular triangulation of overlapping discs. The
 // overlaps are exaggerated, the detection still works. Beside it the case where it stops: four
 // equal discs in a square, whose sides overlap by 2 - sqrt 2 = 0.5858 of the radius, just below and

@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figure 4 of the paper: "As the spheres move, the original Delaunay triangulation may fail to
 // detect contacts. Maintaining the triangulation is mandatory: a new edge appears while another one
 // disappears." Discs fly and collide in a box. (a) T and the discs; (b) the discs after a move with
 // the old edges, which miss a contact; (c) T moved along: one edge has gone, and the new one
 // carries that contact. A video shows T maintained from frame to frame.
 //
-// Writes fig4.png, fig4.pdf, fig4.mp4 (or a folder of frames), fig4_discs.csv, fig4_edges.csv and
-// fig4_film.csv.
+// Writes fig4.png, fig4.pdf, fig4.mp4 (or a folder of frames), fig4_discs.csv, fig4_edges.csv
+// and fig4_film.csv.
 
 #include "geometry_drawing.hpp"
 #include "geometry_figures.hpp"

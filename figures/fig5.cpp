@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figure 5 of the paper: rock fall on an embankment (left) and the pressure distribution (right).
 //
 // Left: the bed after it has absorbed the rock; colours are the horizontal layers just before the
@@ -214,8 +215,8 @@ class Recorder {
 
   void keep(std::vector<Snapshot>& where) { where.push_back({run_.time(), run_.positions()}); }
 
-  /// Foresees the impact some 0.03 s before the rock reaches the bed, and takes the layers of that
-  /// moment.
+  /// Foresees the impact some 0.03 s before the rock reaches the bed, and takes the layers of
+  /// that moment.
   void watch_for_impact() {
     const Columns<2>& x = run_.positions();
     double surface = 0;
@@ -394,9 +395,7 @@ DisplayList large_panel(const Run<2>& run, const Record& record, bool forces) {
   return list;
 }
 
-std::string percent(double fraction) {
-  return rounded(100 * fraction, 2) + " %";
-}
+std::string percent(double fraction) { return rounded(100 * fraction, 2) + " %"; }
 
 }  // namespace
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figure 6 of the paper: packings of equal spheres in the unit cube under gravity and a piston.
 //
 // Above: the packings after 2 s. Below: the density by the height of the piston while it presses

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figure 7 of the paper: packings of spheres of two radii, as figure 6, and what shaking does.
 
 #include "packing.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figure 8 of the paper: medium and small grains leave space for a large one, seen from below.
 //
 // A piston presses the large grain to the floor while the six pictures are taken. The video shows

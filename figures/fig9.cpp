@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figure 9 (not in the paper): how far random packings stay from the closest one.
 //
 // (a) The closest packing of equal spheres, face-centred cubic, run through the engine under its
@@ -103,8 +104,8 @@ Closest run_closest(const FigureOptions& options) {
   return result;
 }
 
-/// Half of the sites on each of two lines that cross in space: every site sees all of the other
-/// line.
+/// Half of the sites on each of two lines that cross in space: every site sees all of the
+/// other line.
 double edges_per_site_on_two_lines(int n) {
   Columns<3> x(3, n);
   for (int i = 0; i < n; ++i) {

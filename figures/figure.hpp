@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// What a figure is. Each is one file that draws it and says what it shows; figures.cpp lists them.
@@ -91,8 +92,8 @@ void draw_figures(const std::vector<Figure>& all, const std::vector<int>& number
 /// Where the report's entry for the speed page is kept.
 std::filesystem::path speed_article_file(const std::filesystem::path& out);
 
-/// Writes index.html and report.html anew, from what figures and the speed page have left in the
-/// folder.
+/// Writes index.html and report.html anew, from what figures and the speed page have left in
+/// the folder.
 /// @throws SceneError if it cannot be written
 void renew_gallery(const std::vector<Figure>& all, const std::filesystem::path& out);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "figure.hpp"
 #include "page.hpp"
 
@@ -83,9 +84,7 @@ fs::path article_file(const Figure& figure, const fs::path& out) {
 
 }  // namespace
 
-fs::path speed_article_file(const fs::path& out) {
-  return out / "speed.html.part-of-index";
-}
+fs::path speed_article_file(const fs::path& out) { return out / "speed.html.part-of-index"; }
 
 void renew_gallery(const std::vector<Figure>& all, const fs::path& out) {
   const auto text_of = [](const fs::path& file) {

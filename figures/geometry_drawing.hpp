@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// How figures 1 to 4 draw discs, cells, edges, legends and magnified details, and how they write
@@ -64,8 +65,8 @@ struct Zoom {
   std::string label = {};  ///< below
 };
 void add_zoom(DisplayList& list, const Found& found, const Zoom& zoom);
-/// A small square around a place of a picture, and lines from it to its magnified window on the
-/// right.
+/// A small square around a place of a picture, and lines from it to its magnified window on
+/// the right.
 void add_magnifier(DisplayList& list, const Vec<2>& at, double half, const Box& window);
 
 /// A line of a legend.

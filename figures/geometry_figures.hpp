@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Figures 1 to 4: each is a state, a pure function from that state to a display list, and a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry_scenes.hpp"
 
 #include <lagrain/all_pairs.hpp>
@@ -25,9 +26,7 @@ constexpr double kDensity = 2500;    // [kg/m^3], glass
 constexpr double kDepth = 0.01;      // of the discs, which are slices of rods [m]
 constexpr double kStepShare = 0.05;  // time step over the shortest contact
 
-double disc_mass(double r) {
-  return kDensity * grain_volume<2>(r, kDepth);
-}
+double disc_mass(double r) { return kDensity * grain_volume<2>(r, kDepth); }
 
 double time_step_for(const std::vector<Grain<2>>& grains, double stiffness) {
   double lightest = grains.front().mass;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Discs for the figures of the geometry (1 to 4), and what is asked of them: their regular

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Scenes that are hard for a program of this kind. Every case is a function that runs its scene
@@ -197,8 +198,8 @@ struct Gas : Outcome {
   int grains = 0;
   std::vector<GasSample> samples;
   double collisions = 0;  ///< of grains: from the mean number of open contacts, a contact time each
-  /// Standard deviation of the energy at the end if every collision errs independently, relative
-  /// [-].
+  /// Standard deviation of the energy at the end if every collision errs independently,
+  /// relative [-].
   double random_walk = 0;
   double open_contacts = 0;  ///< what the largest number of open contacts may add, relative [-]
 };

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 /// @file
 /// The program `lagrain`: runs scenes, draws figures, reports how fast it is.
 ///
@@ -38,9 +39,7 @@ extern "C" void request_stop(int signal) {
   std::signal(signal, SIG_DFL);
 }
 
-bool stopping() {
-  return stop_requested != 0;
-}
+bool stopping() { return stop_requested != 0; }
 
 /// One line on a terminal that overwrites itself; nothing elsewhere.
 class ProgressLine {

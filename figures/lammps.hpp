@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// A bed in LAMMPS: its data file and its input, a run of the program, and what it reports.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "packing.hpp"
 
 #include <lagrain/csv.hpp>
@@ -279,9 +280,7 @@ void add_packing(DisplayList& list, const Vec<2>& low, double width, const Packi
                  .along = Along::top});
 }
 
-std::string digits(double density) {
-  return rounded(density, 3);
-}
+std::string digits(double density) { return rounded(density, 3); }
 
 std::string difference_text(double density, double paper) {
   const std::string difference = rounded(density - paper, 2);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Packings of spheres under a piston, as figures 6, 7 and 9 need them: run, shaken, measured.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "predicate_trials.hpp"
 
 #include "dense_packing.hpp"

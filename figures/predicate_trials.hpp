@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// The predicates of the triangulation put to the test: their formulas in plain doubles, behind

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "report.hpp"
 
 #include "beds.hpp"
@@ -306,9 +307,7 @@ bool draw_plots(const SpeedResults& results, const FigureOptions& options) {
 
 #else
 
-bool draw_plots(const SpeedResults&, const FigureOptions&) {
-  return false;
-}
+bool draw_plots(const SpeedResults&, const FigureOptions&) { return false; }
 
 #endif
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// The speed report: a page, its tables as CSV, and plots, all from one run on this machine.

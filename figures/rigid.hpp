@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Rigid discs in closed form: what soft ones, and solvers with a tolerance, are held against.
@@ -57,8 +58,6 @@ inline Descent descent(double angle, double friction, double gravity, double rad
 /// Share of the start phases in which a disc passes through its like, head-on, between two steps:
 /// the engine has to catch it in the front half of the overlap, which is one diameter long.
 /// @param stride  way per step over the diameter [-]
-inline double tunnelling_share(double stride) {
-  return std::max(0.0, 1 - 1 / stride);
-}
+inline double tunnelling_share(double stride) { return std::max(0.0, 1 - 1 / stride); }
 
 }  // namespace lagrain::figures

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "speed.hpp"
 
 #include "measure.hpp"
@@ -7,9 +8,7 @@
 
 namespace lagrain::bench {
 
-double Contender::median() const {
-  return median_of(ns);
-}
+double Contender::median() const { return median_of(ns); }
 
 double Contender::spread() const {
   const auto [low, high] = std::minmax_element(ns.begin(), ns.end());

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// How fast lagrain is, and how fast others are on the same beds: the scenes, and the harness that
@@ -51,8 +52,8 @@ struct Contender {
   double spread() const;  ///< largest less smallest, of the median [-]
 };
 
-/// The time of one contender over that of another with whom it took turns: the median over the
-/// rounds.
+/// The time of one contender over that of another with whom it took turns: the median over
+/// the rounds.
 double ratio(const Contender& a, const Contender& b);
 
 /// All contenders on one scene.

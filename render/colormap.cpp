@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <lagrain/colormap.hpp>
 
 #include <algorithm>
@@ -82,9 +83,7 @@ constexpr std::string_view kBlueRed =
 static_assert(kViridis.size() == 6 * 256 && kCividis.size() == 6 * 256 &&
               kBlueRed.size() == 6 * 256);
 
-constexpr int digit(char c) {
-  return c <= '9' ? c - '0' : c - 'a' + 10;
-}
+constexpr int digit(char c) { return c <= '9' ? c - '0' : c - 'a' + 10; }
 
 std::uint8_t byte(double value) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));

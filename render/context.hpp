@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// A headless OpenGL 3.3 core context. Only its sources know where the context comes from; the

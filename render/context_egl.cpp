@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "context.hpp"
 
 #include <lagrain/check.hpp>
@@ -86,8 +87,6 @@ class Egl final : public GlContext {
 
 }  // namespace
 
-std::unique_ptr<GlContext> make_egl() {
-  return std::make_unique<Egl>();
-}
+std::unique_ptr<GlContext> make_egl() { return std::make_unique<Egl>(); }
 
 }  // namespace lagrain::detail

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "context.hpp"
 
 #include <lagrain/check.hpp>
@@ -56,8 +57,6 @@ class OsMesa final : public GlContext {
 
 }  // namespace
 
-std::unique_ptr<GlContext> make_osmesa() {
-  return std::make_unique<OsMesa>();
-}
+std::unique_ptr<GlContext> make_osmesa() { return std::make_unique<OsMesa>(); }
 
 }  // namespace lagrain::detail

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "gl.hpp"
 
 #include <lagrain/check.hpp>
@@ -69,9 +70,7 @@ Current::Current() : lock_(context_mutex()) {
   context_->make_current();
 }
 
-Current::~Current() {
-  context_->release();
-}
+Current::~Current() { context_->release(); }
 
 std::string define(const char* name, int value) {
   return std::string("#define ").append(name).append(" ").append(std::to_string(value)) + "\n";

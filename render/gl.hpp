@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// The OpenGL functions that the painter calls, fetched from the context. In a namespace, because

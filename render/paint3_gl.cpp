@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "paint3_gl.hpp"
 
 #include "gl.hpp"
@@ -24,10 +25,10 @@
 // with depth; there is no noise and no blur, and the same scene gives the same bytes.
 //
 // A sub-frame: (1) for every light a shadow map, the depth of what the light sees; (2) for every
-// pixel which body is seen and how deep; (3) one pass over the pixels that finds the point again,
-// asks the shadow maps, and adds the light to the sum. Balls are quads whose fragments solve for
-// the ray's way through the sphere; depth is written by the fragment, linear along the line of
-// sight.
+// pixel which body is seen and how deep; (3) one pass over the pixels that finds the point
+// again, asks the shadow maps, and adds the light to the sum. Balls are quads whose fragments
+// solve for the ray's way through the sphere; depth is written by the fragment, linear along the
+// line of sight.
 //
 // Bodies are convex. A ray of light that meets one has a stretch inside it; whatever lies before
 // that stretch is lit, whatever lies behind it is not. Shadow maps therefore keep the middle of the
@@ -372,8 +373,8 @@ class Painter {
     lights_.push_back(
         light_view(around(scene.lights.sun, std::cos(rim), kGolden * frame), 0, map_jitter));
     strengths_.push_back(static_cast<float>(scene.lights.sun_strength));
-    // The lights stand evenly over the hemisphere; a surface that sees all of it gets the full
-    // strength.
+    // The lights stand evenly over the hemisphere; a surface that sees all of it gets the
+    // full strength.
     for (int k = 0; k < sky; ++k) {
       const int index = frame + k * frames;
       const double cosine = 1 - (index + 0.5) / (frames * sky);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "paint_cairo.hpp"
 
 #include "image_io.hpp"

@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// The same display list by Cairo as pixels: an independent witness for the tests. Private to
-/// render.
+/// The same display list by Cairo as pixels: an independent witness for the tests. Private
+/// to render.
 
 #include <lagrain/paint.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "gl.hpp"
 #include "text_layout.hpp"
 
@@ -43,8 +44,8 @@ constexpr int kAtlasRow = 4096;   // [texels]
 // A picture with more corners is drawn in parts: the shader counts corners in a float, which is
 // exact up to 2^24, and a texture has at most gl::kLargest rows.
 constexpr std::size_t kMostCorners = 4'000'000;
-// So many items of one kind in a row are drawn by the program of that kind, fewer by the general
-// one.
+// So many items of one kind in a row are drawn by the program of that kind, fewer by the
+// general one.
 constexpr std::size_t kLongRun = 200;
 
 const char* const kVertexShader = R"(#version 330 core
@@ -183,9 +184,7 @@ void main() {
 }
 )";
 
-std::array<std::uint8_t, 4> bytes(Colour c) {
-  return {c.r, c.g, c.b, c.a};
-}
+std::array<std::uint8_t, 4> bytes(Colour c) { return {c.r, c.g, c.b, c.a}; }
 
 // Keeps programs and buffers from picture to picture: making them costs as much as a small figure.
 class Painter {

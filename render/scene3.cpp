@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <lagrain/scene3.hpp>
 
 #include <lagrain/check.hpp>
@@ -36,8 +37,8 @@ Camera camera_framing(const Box3& box, const Vec<3>& direction, const Vec<3>& up
   const Eigen::Matrix3d rows = page_axes(camera);
 
   // Seen from the eye (x, y, z) the picture is 2 t (z - c) high at the depth of a corner (a, b, c).
-  // The corner lies inside it while |b - y| <= t (z - c). All do so while
-  // max(b + t c) <= y + t z and min(b - t c) >= y - t z; and likewise across. Parallel lines of
+  // The corner lies inside it while |b - y| <= t (z - c). So all corners do while max(b + t c) is
+  // at most y + t z, and min(b - t c) at least y - t z; and likewise across. Parallel lines of
   // sight are the limit t -> 0.
   const double shrink = 1 - 2 * margin, half = std::tan(0.5 * field_of_view) * shrink;
   const Vec<2> t(half * aspect, half);
@@ -104,9 +105,7 @@ Vec<2> View3::point(const Vec<3>& world) const {
   return middle_ + scale(world) * (axes_.topRows<2>() * (world - eye_));
 }
 
-double View3::depth(const Vec<3>& world) const {
-  return -axes_.row(2).dot(world - eye_);
-}
+double View3::depth(const Vec<3>& world) const { return -axes_.row(2).dot(world - eye_); }
 
 double View3::scale(const Vec<3>& world) const {
   return distance_ > 0 ? scale_ * distance_ / depth(world) : scale_;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Shaders of the painter of scenes (paint3_gl.cpp, which explains them). Private to render.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// How a camera or a light sees balls, and which of them it sees at all. Lengths are in any one

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Where every glyph of a label stands. One layout serves all painters. Private to render.

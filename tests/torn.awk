@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Finds comments and strings that a formatter has torn, in C++ files; one line per finding.
 #
 # Consecutive lines of a comment (same indentation, same marker), or of a string that goes on from

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// The contact kernels that the library holds compiled: those of all listed laws. A program that
-/// steps one of them is compiled much faster if it includes this header; results are the same
-/// without.
+/// The contact kernels that the library holds compiled: those of all listed laws. A program
+/// that steps one of them is compiled much faster if it includes this header; results are the
+/// same without.
 
 #include <lagrain/contact_kernel.hpp>
 #include <lagrain/contact_laws.hpp>
@@ -10,7 +11,7 @@
 namespace lagrain {
 
 /// @cond
-#define LAGRAIN_KERNEL(word, Normal, Friction)                \
+#define LAGRAIN_KERNEL(word, Normal, Friction)              \
   extern template class ContactKernel<2, Friction<Normal>>; \
   extern template class ContactKernel<3, Friction<Normal>>;
 #define LAGRAIN_KERNELS(word, Friction) LAGRAIN_NORMAL_LAWS(LAGRAIN_KERNEL, Friction)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Steps 2 and 3 of the paper: contacts are detected among the near pairs, and the law is applied

@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// The contacts of a list computed with the widest instructions that the machine has, chosen at run
-/// time.
+/// The contacts of a list computed with the widest instructions that the machine has, chosen at
+/// run time.
 
 #include <lagrain/contact_scene.hpp>
 #include <lagrain/contact_sweep.hpp>

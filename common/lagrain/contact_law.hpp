@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// What a contact law is. A law is a small immutable aggregate of SI numbers; laws compose by
@@ -49,9 +50,9 @@ concept ContactLaw = requires(const L law, const Touch<Dim>& touch,
 &&std::default_initializable<typename L::template Memory<Dim>>;
 
 /// Against tangential forces packings yield more easily than along the normal, because grains also
-/// turn. In a closest packing whose grains all turn alike a tangential dashpot damps 24 / 6 (discs)
-/// and 40 / 8 times (spheres) as much as a normal one does in its stiffest mode. We take the
-/// larger.
+/// turn. In a closest packing whose grains all turn alike a tangential dashpot damps 24 / 6
+/// (discs) and 40 / 8 times (spheres) as much as a normal one does in its stiffest mode. We take
+/// the larger.
 inline constexpr double kTangentialMobility = 5;
 
 /// A law along the normal alone, which friction laws build on. `normal_force` is the force [N],

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// The contact laws that lagrain knows, each in one row. Scene files, their messages, the choice of
@@ -169,6 +170,13 @@ struct FrictionLawEntry<CundallStrack> {
     return {normal, n.friction, n.stiffness_ratio, n.tangential_damping};
   }
 };
+
+#define LAGRAIN_IS_LAW(word, Normal, Friction) \
+  static_assert(ContactLaw<Friction<Normal>, 2> && ContactLaw<Friction<Normal>, 3>);
+#define LAGRAIN_ARE_LAWS(word, Friction) LAGRAIN_NORMAL_LAWS(LAGRAIN_IS_LAW, Friction)
+LAGRAIN_FRICTION_LAWS(LAGRAIN_ARE_LAWS)
+#undef LAGRAIN_ARE_LAWS
+#undef LAGRAIN_IS_LAW
 
 /// An entry as data.
 struct LawDescription {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Finds contacts from nothing: what near lists are audited with.
@@ -51,7 +52,8 @@ class ContactSearch {
       if (radius[i] <= giant) ordinary_.push_back(i);
     }
     no_margin_.setZero(static_cast<Eigen::Index>(ordinary_.size()));
-    grid_.near_pairs(x(Eigen::seqN(0, Eigen::fix<Dim>), ordinary_), radius(ordinary_), no_margin_, touching_);
+    grid_.near_pairs(x(Eigen::seqN(0, Eigen::fix<Dim>), ordinary_), radius(ordinary_), no_margin_,
+                     touching_);
     for (Pair& pair : touching_) {
       pair = {ordinary_[static_cast<std::size_t>(pair.i)],
               ordinary_[static_cast<std::size_t>(pair.j)]};

@@ -1,10 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Coulomb friction with an elastic tangential spring, over any normal law.
 
 #include <lagrain/contact_law.hpp>
-#include <lagrain/hertz.hpp>
-#include <lagrain/hooke.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -108,9 +107,5 @@ struct CundallStrack {
     return select(after > Real(0), Real(sqrt(before / after)), Real(1)) * flat;
   }
 };
-
-static_assert(ContactLaw<CundallStrack<LinearSpring>, 2> &&
-              ContactLaw<CundallStrack<LinearSpring>, 3>);
-static_assert(ContactLaw<CundallStrack<Hertz>, 2> && ContactLaw<CundallStrack<Hertz>, 3>);
 
 }  // namespace lagrain

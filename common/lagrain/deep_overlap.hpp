@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// The deepest overlap of a step: looked for, and reported, when one has gone beyond what the run
-/// allows.
+/// The deepest overlap of a step: looked for, and reported, when one has gone beyond what the
+/// run allows.
 
 #include <lagrain/check.hpp>
 #include <lagrain/contact_scene.hpp>

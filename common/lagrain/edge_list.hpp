@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// The edges of a triangulation as one sorted list, kept up to date by what its updates change.

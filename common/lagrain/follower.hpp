@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// How T follows the grains by flips: new references for those that are about to leave their skins.
@@ -112,9 +113,9 @@ class Follower {
   /// The largest skin, of a grain's radius. It binds only where a grain has much room: with half of
   /// it a grain in flight is placed up to twice as often.
   static constexpr double kMostSkin = 2;
-  /// The smallest skin, of the smallest radius around: a grain gets it even if the certificate then
-  /// fails. With less, a grain squeezed by others is placed again very soon; with more, more edges
-  /// fail.
+  /// The smallest skin, of the smallest radius around: a grain gets it even if the certificate
+  /// then fails. With less, a grain squeezed by others is placed again very soon; with more, more
+  /// edges fail.
   static constexpr double kLeastSkin = 0.02;
   /// How far ahead a reference may stand, of a skin. With none, a grain in flight crosses half of
   /// the ball and is placed nearly twice as often; with a whole skin a grain that turns round has

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Hertz contact with viscous damping.
@@ -15,11 +16,11 @@ namespace lagrain {
 ///     f = max(0, K delta^(3/2) + sqrt(5) zeta sqrt(m_eff K) delta^(1/4) closing),
 ///     K = (4/3) E* sqrt(R_eff)
 ///
-/// With the dashpot of Tsuji, Tanaka & Ishida, Powder Technology 71 (1992) 239, the restitution
-/// does not depend on the speed. Measured along s = (4/5) delta^(5/4) the motion is that of a
-/// linear damped spring (Antypov & Elliott, EPL 94 (2011) 50004), and the force vanishes at the
-/// same moment in both pictures, so zeta is the same function of the restitution as in
-/// `LinearSpring`.
+/// With the dashpot of Tsuji, Tanaka & Ishida, Powder Technology 71 (1992) 239, the
+/// restitution does not depend on the speed. Measured along s = (4/5) delta^(5/4) the motion
+/// is that of a linear damped spring (Antypov & Elliott, EPL 94 (2011) 50004), and the force
+/// vanishes at the same moment in both pictures, so zeta is the same function of the
+/// restitution as in `LinearSpring`.
 ///
 /// Discs use the same formula (with their radii): the contact line of two cylinders has no finite
 /// stiffness of its own, so in the plane this is a model, not elasticity.
@@ -81,8 +82,8 @@ struct Hertz {
   /// @}
 
   /// The time 1 / omega0 [s] of the linear spring whose collisions last as long. The undamped
-  /// collision at `impact_speed` lasts 2.94328 delta_max / v, with
-  /// delta_max = (5 m v^2 / (4 K))^(2/5) (Johnson, Contact Mechanics, 1985, section 11.4), and a
+  /// collision at `impact_speed` lasts 2.94328 delta_max / v, where the deepest overlap
+  /// delta_max is (5 m v^2 / (4 K))^(2/5) (Johnson, Contact Mechanics, 1985, section 11.4), and a
   /// linear spring of that duration has 1 / omega0 = duration / pi.
   double natural_time(double effective_mass, double effective_radius) const {
     const double deepest = std::pow(

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Several numbers side by side, for one instruction to work on.
@@ -85,9 +86,7 @@ Lanes<W> sqrt(const Lanes<W>& a) {
 
 /// `yes` where the condition holds, else `no`.
 /// @{
-inline double select(bool condition, double yes, double no) {
-  return condition ? yes : no;
-}
+inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
 template <int W>
 Lanes<W> select(const LaneMask<W>& condition, const Lanes<W>& yes, const Lanes<W>& no) {
   return Lanes<W>(condition.v ? yes.v : no.v);
@@ -95,9 +94,7 @@ Lanes<W> select(const LaneMask<W>& condition, const Lanes<W>& yes, const Lanes<W
 /// @}
 /// yes where the condition holds, else 0.
 /// @{
-inline double only_if(bool condition, double yes) {
-  return condition ? yes : 0;
-}
+inline double only_if(bool condition, double yes) { return condition ? yes : 0; }
 template <int W>
 Lanes<W> only_if(const LaneMask<W>& condition, const Lanes<W>& yes) {
   return select(condition, yes, Lanes<W>(0));
@@ -105,12 +102,8 @@ Lanes<W> only_if(const LaneMask<W>& condition, const Lanes<W>& yes) {
 /// @}
 /// Whether the condition holds in some lane.
 /// @{
-inline bool any(bool condition) {
-  return condition;
-}
-inline bool any(const LaneMask<2>& condition) {
-  return (condition.v[0] | condition.v[1]) != 0;
-}
+inline bool any(bool condition) { return condition; }
+inline bool any(const LaneMask<2>& condition) { return (condition.v[0] | condition.v[1]) != 0; }
 inline bool any(const LaneMask<4>& condition) {
   const LaneMask<4>::Vector& v = condition.v;
   return any(
@@ -148,15 +141,9 @@ inline constexpr int kLanes<Lanes<W>> = W;
 
 /// The number in lane k: lane() reads it, set_lane() writes it.
 /// @{
-inline double lane(double a, int) {
-  return a;
-}
-inline bool lane(bool a, int) {
-  return a;
-}
-inline void set_lane(double& a, int, double value) {
-  a = value;
-}
+inline double lane(double a, int) { return a; }
+inline bool lane(bool a, int) { return a; }
+inline void set_lane(double& a, int, double value) { a = value; }
 template <int W>
 double lane(const Lanes<W>& a, int k) {
   return a.v[k];

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// A triangulation that stands still while its grains move within their skins.
@@ -92,8 +93,8 @@ struct LazySites {
     weight[i] = weight_with(radius[i], s);
   }
 
-  /// How far a grain at x may move before it leaves its skin [m]; negative if it has, or is not a
-  /// number.
+  /// How far a grain at x may move before it leaves its skin [m]; negative if it has, or is not
+  /// a number.
   double room(int i, const Vec<Dim>& x) const {
     return skin[i] * kUsable - (x - drift - reference.col(i)).norm();
   }

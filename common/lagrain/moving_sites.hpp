@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// What the dynamic regular triangulations of the plane and of space share: their sites, and the
@@ -46,8 +47,8 @@ struct TriangulationParts;
 ///
 /// A site of a set that spans less than Dim dimensions has no simplex by itself. Such a set is
 /// joined to Dim - dimension() *auxiliary* sites outside its span, whose ids follow those
-/// of the others. The cone over a regular triangulation is regular wherever its apex is, so no test and no
-/// flip needs a case of its own. Flat sets are built anew at every change.
+/// of the others. The cone over a regular triangulation is regular wherever its apex is, so no test
+/// and no flip needs a case of its own. Flat sets are built anew at every change.
 template <int Dim>
 class MovingSites {
  public:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// The flat lists that the step loop runs over, and when they must be made anew.
@@ -108,8 +109,8 @@ class NearList {
     return (x - shift - stay.centre).squaredNorm() <= stay.squared_margin;
   }
 
-  /// Whether all walls are within their margins. Walls are centred where they were at the last
-  /// refresh.
+  /// Whether all walls are within their margins. Walls are centred where they were at the
+  /// last refresh.
   /// @pre listed()
   bool walls_hold(const std::vector<Wall<Dim>>& all_walls, const Vec<Dim>& shift) const {
     for (std::size_t w = 0; w < all_walls.size(); ++w) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// What a neighbourhood is: whatever proposes the pairs that may touch.
@@ -56,10 +57,10 @@ bool within_reach(const Columns<Dim>& x, const Eigen::VectorXd& radius,
   return within_reach<Dim>(x.col(i), radius[i] + margin[i], x.col(j), radius[j] + margin[j]);
 }
 
-/// The movement that most grains share: the median of each component over a sample of the columns
-/// of f(i), i in [0, n). Neighbourhoods measure displacements against it, because a common drift
-/// (free fall, a shaken box) moves no grain against another. A few fast grains do not change a
-/// median.
+/// The movement that most grains share: the median of each component over a sample of the
+/// columns of f(i), i in [0, n). Neighbourhoods measure displacements against it, because a
+/// common drift (free fall, a shaken box) moves no grain against another. A few fast grains do
+/// not change a median.
 template <int Dim, class F>
 Vec<Dim> common_drift(int n, F&& f) {
   constexpr int kSample = 101;

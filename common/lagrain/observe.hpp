@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// What one measures on a simulation: energies and their ledger, momentum, overlaps, coordination,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Random numbers that are the same on every platform: the standard fixes the engine's output but

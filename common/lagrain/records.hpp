@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// How grains lie in memory while they are stepped: what a contact reads of a grain is one record,
@@ -15,9 +16,7 @@
 namespace lagrain {
 
 /// The least multiple of four that is not below `count`: so many doubles can be read by fours.
-constexpr int padded_to_four(int count) {
-  return (count + 3) / 4 * 4;
-}
+constexpr int padded_to_four(int count) { return (count + 3) / 4 * 4; }
 
 /// The alignment [bytes] of a record of so many doubles, such that records in a row share as few
 /// cache lines as they can: the largest power of two that divides its size, up to a line.
@@ -99,12 +98,8 @@ constexpr std::size_t bytes_per_grain() {
 
 namespace detail {
 
-inline void read(double& value, const double* from) {
-  value = *from;
-}
-inline void write(double* to, double value) {
-  *to = value;
-}
+inline void read(double& value, const double* from) { value = *from; }
+inline void write(double* to, double value) { *to = value; }
 template <int W>
 void read(Lanes<W>& value, const double* from) {
   __builtin_memcpy(&value.v, from, sizeof value.v);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// What a simulation is told besides its grains, walls and laws, and what it counts.
@@ -10,10 +11,10 @@ namespace lagrain {
 /// What is the same for all grains.
 template <int Dim>
 struct Setting {
-  Vec<Dim> gravity = Vec<Dim>::Zero();  ///< [m/s^2]
-  double time_step = 0;                 ///< [s]
+  Vec<Dim> gravity = Vec<Dim>::Zero();       ///< [m/s^2]
+  double time_step = 0;                      ///< [s]
   double largest_overlap = kLargestOverlap;  ///< of the smaller radius; beyond it the run stops [-]
-  int threads = 1;                      ///< that share a step; results do not depend on it
+  int threads = 1;                           ///< that share a step; results do not depend on it
   InstructionSet instructions = instruction_sets().back();  ///< nor on this
 };
 

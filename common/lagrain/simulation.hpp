@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// The step loop of the distinct element method.
@@ -46,9 +47,9 @@ namespace lagrain {
 /// are so close that they might touch before the list is made again. Step 5 does nothing while that
 /// list holds. Grains lie in slots (GrainStore), and blocks of slots are what threads share.
 ///
-/// Forces are summed in an order fixed by the slots, so every neighbourhood, instruction set and
-/// number of threads gives the same trajectory, bit for bit. One object is for one caller at a
-/// time.
+/// Forces are summed in an order fixed by the slots, so every neighbourhood, instruction set
+/// and number of threads gives the same trajectory, bit for bit. One object is for one caller
+/// at a time.
 template <int Dim, ContactLaw<Dim> Law, Integrator Motion, Neighbourhood<Dim> N>
 class Simulation {
  public:

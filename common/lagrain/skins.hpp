@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Why a triangulation that follows the grains lazily misses no contact, and how large the skins
@@ -47,9 +48,7 @@
 namespace lagrain {
 
 /// The weight of a site whose grain has a skin [m^2].
-inline double weight_with(double radius, double skin) {
-  return (radius + skin) * (radius + skin);
-}
+inline double weight_with(double radius, double skin) { return (radius + skin) * (radius + skin); }
 
 /// The certificate (2): whether two reference balls meet at less than a right angle, or not at all.
 /// One part in 10^12 covers the rounding of both sides.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Work shared by threads.
@@ -7,8 +8,8 @@
 namespace lagrain {
 
 /// Calls f(item, thread) for every item in [0, count); each thread takes a run of items, the same
-/// every time. One thread alone does without OpenMP, whose team of one takes a microsecond to call
-/// together.
+/// every time. One thread alone does without OpenMP, whose team of one takes a microsecond to
+/// call together.
 template <class F>
 void share_among_threads(std::size_t count, int threads, F&& f) {
   const auto n = static_cast<std::size_t>(threads);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// One contact as a law sees it, and what the law answers.
@@ -93,8 +94,8 @@ MaybeTouch<Dim, Real> touch_of(const Body<Dim, needs, Real>& i, const Body<Dim, 
 }
 
 /// Whether a grain of a mass [kg] touches a wall, and how. The wall's surface is `distance` [m]
-/// from the grain's centre, has its unit normal towards the grain, and moves with `wall_velocity`
-/// [m/s].
+/// from the grain's centre, has its unit normal towards the grain, and moves with
+/// `wall_velocity` [m/s].
 template <Needs needs, int Dim, class Real>
 MaybeTouch<Dim, Real> touch_of_wall(const Body<Dim, needs, Real>& i, const Real& mass,
                                     const Real& distance, const Vec<Dim, Real>& normal,

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// What every dynamic regular triangulation offers, whatever its dimension. The modules dim2 and
-/// dim3 have one each; `common` only names the interface, so that the neighbourhood is written
-/// once.
+/// What every dynamic regular triangulation offers, whatever its dimension. The modules dim2
+/// and dim3 have one each; `common` only names the interface, so that the neighbourhood is
+/// written once.
 
 #include <lagrain/edge_list.hpp>
 #include <lagrain/vec.hpp>
@@ -24,8 +25,8 @@ struct UpdateReport {
   std::int64_t flips = 0;  ///< local flips
   /// Sites taken out before a move because a simplex would have inverted.
   std::int64_t extracted = 0;
-  /// Places where flips could not finish: in the plane a site taken out, in space a cavity filled
-  /// anew.
+  /// Places where flips could not finish: in the plane a site taken out, in space a cavity
+  /// filled anew.
   std::int64_t unstuck = 0;
   /// Sites put back: those taken out, and those that were hidden and are visible now.
   std::int64_t reinserted = 0;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// The neighbourhood that the project exists for: the edges of a regular triangulation that follows
@@ -232,8 +233,8 @@ class TriangulationNeighbourhood {
     if (!sites_.waiting.empty()) defects.push_back("grains wait for new references");
   }
 
-  /// Lists the pairs within reach: edges of T or, while T leaps, pairs of reference balls that
-  /// meet.
+  /// Lists the pairs within reach: edges of T or, while T leaps, pairs of reference balls
+  /// that meet.
   void collect_near(const Columns<Dim>& x, const Eigen::VectorXd& radius,
                     const Eigen::VectorXd& margin, std::vector<Pair>& pairs) {
     now_.resize(static_cast<std::size_t>(size()));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// What it costs to keep T up to date: the numbers by which a triangulation chooses whether it

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Vectors in Dim dimensions, and the few operations that differ between the plane and space.

@@ -1,10 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Regularised Coulomb friction without memory, over any normal law.
 
 #include <lagrain/contact_law.hpp>
-#include <lagrain/hertz.hpp>
-#include <lagrain/hooke.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -63,9 +62,5 @@ struct ViscousFriction {
   bool conservative() const { return false; }
   /// @}
 };
-
-static_assert(ContactLaw<ViscousFriction<LinearSpring>, 2> &&
-              ContactLaw<ViscousFriction<LinearSpring>, 3>);
-static_assert(ContactLaw<ViscousFriction<Hertz>, 2> && ContactLaw<ViscousFriction<Hertz>, 3>);
 
 }  // namespace lagrain

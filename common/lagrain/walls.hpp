@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// Walls: half-spaces, segments and cylinders, fixed or moving, as contact partners that never
-/// turn.
+/// Walls: half-spaces, segments and cylinders, fixed or moving, as contact partners that
+/// never turn.
 
 #include <lagrain/vec.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <lagrain/files.hpp>
 
 #include <lagrain/check.hpp>
@@ -18,9 +19,7 @@ namespace fs = std::filesystem;
 }
 
 /// What the last failed call on a stream says.
-std::string last_reason() {
-  return errno != 0 ? std::strerror(errno) : "unknown error";
-}
+std::string last_reason() { return errno != 0 ? std::strerror(errno) : "unknown error"; }
 
 }  // namespace
 

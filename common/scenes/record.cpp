@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 
@@ -215,9 +216,7 @@ class Recorder {
 
 }  // namespace
 
-const char* version() {
-  return LAGRAIN_VERSION;
-}
+const char* version() { return LAGRAIN_VERSION; }
 
 template <int Dim>
 bool record(Run<Dim>& run, const RecordOptions& options) {

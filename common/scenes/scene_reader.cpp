@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <lagrain/scene.hpp>
 
 #include "scene_keys.hpp"
@@ -534,9 +535,7 @@ std::string whole_file(const std::filesystem::path& file) {
 }
 
 /// Scenes are called by their file's name in messages, without the folder.
-std::string called(const std::filesystem::path& file) {
-  return file.filename().string();
-}
+std::string called(const std::filesystem::path& file) { return file.filename().string(); }
 
 int dimension_of(const toml::table& root, const std::string& name) {
   const std::string key(keys::kDimension.name);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "toml_table.hpp"
 
 #include <lagrain/numbers.hpp>
@@ -193,9 +194,7 @@ double TomlTable::quantity(const toml::node& node, const Key& key) const {
   return value;
 }
 
-double TomlTable::number(const Key& key) {
-  return quantity(require(key, described(key)), key);
-}
+double TomlTable::number(const Key& key) { return quantity(require(key, described(key)), key); }
 
 double TomlTable::number(const Key& key, double fallback) {
   const toml::node* node = find(key);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Private to the scene reader: a table of a TOML file that knows where each of its keys stands,

@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// Private to the triangulations: what an audit finds wrong, as far as it does not depend on the
-/// dimension.
+/// Private to the triangulations: what an audit finds wrong, as far as it does not depend on
+/// the dimension.
 
 #include <lagrain/moving_sites.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Private to the predicates of dim2 and dim3: the sign of a polynomial in doubles, exactly.
@@ -30,8 +31,6 @@ int exact_sign(const Arguments&... arguments) {
   return static_cast<int>(CGAL::sign(Formula::template of<ExactNumber>(arguments...)));
 }
 
-inline int compare(double a, double b) {
-  return (a > b) - (a < b);
-}
+inline int compare(double a, double b) { return (a > b) - (a < b); }
 
 }  // namespace lagrain::detail

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Private to the triangulations: the steps of an update that do not depend on the dimension.
@@ -188,9 +189,9 @@ template <int Dim>
 void MovingSites<Dim>::rebuild_by_insertion() {
   // Up to so many sites are inserted in the order of their ids. Measured with builds of the
   // jittered lattices of tests/bench/bench_update.cpp, whose ids are in a good order: at 64 sites
-  // sorting costs 40 % of such a build in the plane and 20 % in space. That is what half the number
-  // would cost sets of 32 to 64 sites; twice the number lets the walks of up to 128 sites cross the
-  // set.
+  // sorting costs 40 % of such a build in the plane and 20 % in space. That is what half the
+  // number would cost sets of 32 to 64 sites; twice the number lets the walks of up to 128 sites
+  // cross the set.
   constexpr std::size_t kSorted = 64;
   std::vector<int> order = present_sites();
   const auto place = [&](int id) { return site(id); };

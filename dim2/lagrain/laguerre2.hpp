@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Laguerre cells in the plane: the dual of the regular triangulation, cut to a box.
@@ -9,9 +10,9 @@
 
 namespace lagrain {
 
-/// The points x of the box where the power |x - x_i|^2 - w_i of site i is least, as a convex
-/// polygon, 2 x K, counter-clockwise; K = 0 if there are none (in particular if the site is
-/// hidden).
+/// The points x of the box where the power |x - x_i|^2 - w_i of site i is least, as a
+/// convex polygon, 2 x K, counter-clockwise; K = 0 if there are none (in particular if the
+/// site is hidden).
 ///
 /// Only the neighbours in T can bound the cell. Weights are those of T, so for inflated discs these
 /// are the cells of the inflated discs. Corners are rounded: this is for drawing and measuring, not

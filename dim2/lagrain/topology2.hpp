@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// The combinatorial layer of the triangulation in the plane: triangles, neighbours, flips. It
@@ -10,9 +11,9 @@
 
 namespace lagrain {
 
-/// A triangulated sphere: the triangles of a triangulation in the plane, and one infinite triangle
-/// over each hull edge, which joins it to the vertex kInfinite. Hull and interior are then the
-/// same.
+/// A triangulated sphere: the triangles of a triangulation in the plane, and one infinite
+/// triangle over each hull edge, which joins it to the vertex kInfinite. Hull and interior are
+/// then the same.
 ///
 /// Triangle t owns the corners 4 t, 4 t + 1, 4 t + 2 (in the place of a fourth are its mark and
 /// flags, so that a triangle fills half a cache line). A corner names three things: the vertex at

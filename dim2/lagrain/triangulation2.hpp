@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// The dynamic regular triangulation of weighted sites in the plane.
@@ -46,14 +47,14 @@ struct detail::TriangulationParts<2> {
 /// - A site is *hidden* when its cell is empty: others cover it. Hidden sites are kept, tried again
 ///   after every update, and listed by hidden().
 ///
-/// How a move works. This is step 5 of the paper's scheme, "update T with local operations", which
-/// it leaves open. Flipping edges is due to Lawson (Mathematical Software III (1977) 161); what to
-/// do where sites moved so far that T is no triangulation any more, and where flips get stuck, is
-/// ours:
+/// How a move works. This is step 5 of the paper's scheme, "update T with local operations",
+/// which it leaves open. Flipping edges is due to Lawson (Mathematical Software III (1977) 161);
+/// what to do where sites moved so far that T is no triangulation any more, and where flips get
+/// stuck, is ours:
 /// 1. Put the moved sites in place. Triangles that turned inside out would spoil the triangulation,
 ///    so a cover of them by moved sites is first taken out at the old places.
-/// 2. Flip edges that are not locally regular. Edges to the infinite vertex follow the same rule, so
-///    the hull needs no code of its own. An edge that cannot be flipped has a reflex end, which is
+/// 2. Flip edges that are not locally regular. Edges to the infinite vertex follow the same rule,
+///    so the hull needs no code of its own. An edge that cannot be flipped has a reflex end, which is
 ///    hidden by the three other sites: it is taken out (in the plane this is the whole remedy).
 /// 3. Positive triangles and a convex hull that goes round once make a triangulation; with all
 ///    edges locally regular it is the regular one. If the hull fails the test, build anew.

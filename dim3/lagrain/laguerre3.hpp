@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Laguerre cells in space: the dual of the regular triangulation, cut to a box.
@@ -19,18 +20,16 @@ struct LaguerreFace {
 
 /// How LaguerreFace::beyond names a side of the box: -1 and -2 for the lower and the upper one
 /// along x, -3 and -4 along y, -5 and -6 along z.
-constexpr int box_side(int axis, bool upper) {
-  return -1 - 2 * axis - (upper ? 1 : 0);
-}
+constexpr int box_side(int axis, bool upper) { return -1 - 2 * axis - (upper ? 1 : 0); }
 
 /// The points x of the box where the power |x - x_i|^2 - w_i of site i is least, as the faces of a
 /// convex polyhedron; none if there are no such points (in particular if the site is hidden).
 ///
 /// Only the neighbours in T can bound the cell. Weights are those of T, so for inflated spheres
 /// these are the cells of the inflated spheres. Each face is cut out of its plane by itself:
-/// rounding displaces corners (by about 1e-15 of the box) but cannot break the polyhedron. Faces
-/// narrower than that, as ties have, are left out. This is for drawing and measuring, not for
-/// deciding.
+/// rounding displaces corners (by about 1e-15 of the box) but cannot break the polyhedron.
+/// Faces narrower than that, as ties have, are left out. This is for drawing and measuring, not
+/// for deciding.
 /// @pre the site is present and the box has a volume
 std::vector<LaguerreFace> laguerre_cell(const Triangulation<3>& triangulation, int site,
                                         const Eigen::AlignedBox3d& box);

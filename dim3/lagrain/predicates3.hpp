@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Points in, sign out: the exact geometric decisions of the regular triangulation in space.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// The combinatorial layer of the triangulation in space: tetrahedra, neighbours, exchanges of a
@@ -15,9 +16,9 @@ namespace lagrain {
 /// then the same.
 ///
 /// Tetrahedron t owns the corners 4 t ... 4 t + 3. A corner names three things: the vertex at it,
-/// the facet opposite to it, and, by twin(), the corner across that facet. The four vertices stand
-/// in positive order. A tetrahedron takes 32 bytes, and 5 for marks; a site of a packing has about
-/// six.
+/// the facet opposite to it, and, by twin(), the corner across that facet. The four vertices
+/// stand in positive order. A tetrahedron takes 32 bytes, and 5 for marks; a site of a packing
+/// has about six.
 class Topology3 {
  public:
   static constexpr int kInfinite = -1;  ///< the vertex at infinity

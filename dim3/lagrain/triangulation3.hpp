@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// The dynamic regular triangulation of weighted sites in space.
@@ -49,11 +50,11 @@ struct detail::TriangulationParts<3> {
 /// - A site is *hidden* when its cell is empty: others cover it. Hidden sites are kept, tried again
 ///   after every update, and listed by hidden().
 ///
-/// How a move works. This is step 5 of the paper's scheme, "update T with local operations", which
-/// it leaves open. The flips 2-3, 3-2 and 4-4 are Joe's (Comput. Aided Geom. Des. 8 (1991) 123). In
-/// space they alone do not do it: slivers turn inside out under tiny moves, and flips can get
-/// stuck. What is done then is ours. Each step is checked, and what it leaves is taken up by the
-/// next:
+/// How a move works. This is step 5 of the paper's scheme, "update T with local operations",
+/// which it leaves open. The flips 2-3, 3-2 and 4-4 are Joe's (Comput. Aided Geom. Des. 8 (1991)
+/// 123). In space they alone do not do it: slivers turn inside out under tiny moves, and flips
+/// can get stuck. What is done then is ours. Each step is checked, and what it leaves is taken up
+/// by the next:
 /// 1. Put the moved sites in place. Most tetrahedra that are now inverted go away by one flip that
 ///    makes positive ones only (2-3, 3-2, 4-4; so do the flat ones under a wall). If some stay, the
 ///    flips are undone, a cover of the rest by moved sites is taken out at the old places, where T

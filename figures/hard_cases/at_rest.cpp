@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Hard cases of what has to come to rest.
 
 #include "stone.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Hard cases of where grains are: in a row, at one point, far away, and of all sizes.
 
 #include "stone.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Hard cases of runs so long that small errors could add up.
 
 #include "stone.hpp"

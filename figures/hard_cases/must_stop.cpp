@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Hard cases in which a run must stop, and say why.
 
 #include "stone.hpp"

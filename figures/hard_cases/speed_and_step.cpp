@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Hard cases of grains that are too fast for the step, and of steps that are too long.
 
 #include "stone.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// What the scenes of the hard cases are made of: stone, gravity, grains put by hand, a tub.

@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// lagrain as a contender, with any neighbourhood.
+/// The contender lagrain, with any neighbourhood.
 
 #include "contenders.hpp"
 #include "measure.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The scenes of the speed report, and the beds that they start from.
 
 #include "contest.hpp"

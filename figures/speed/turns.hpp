@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// How a contender is measured: it takes its steps in turns with the others, so that a busy machine

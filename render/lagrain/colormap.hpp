@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Colours, and maps from a number to a colour that stay readable in grey print.
@@ -22,8 +23,8 @@ Colour with_alpha(Colour colour, double alpha);
 /// Mixes two colours in sRGB values: `from` at t = 0, `to` at t = 1; t in [0, 1].
 Colour mix(Colour from, Colour to, double t);
 
-/// Perceived lightness L* of CIELAB, from 0 (black) to 100 (white), for an sRGB colour; ignores
-/// alpha.
+/// Perceived lightness L* of CIELAB, from 0 (black) to 100 (white), for an sRGB colour;
+/// ignores alpha.
 double lightness(Colour colour);
 
 /// Colour maps of 256 entries.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// What a two-dimensional picture consists of: a list of items in painter's order, later ones on
@@ -37,8 +38,8 @@ struct Box {
 /// Colour of an area that is not filled.
 inline constexpr Colour kNoFill{0, 0, 0, 0};
 
-/// How a line is drawn. A width of 0 draws nothing; widths below a pixel become fainter, not
-/// thinner.
+/// How a line is drawn. A width of 0 draws nothing; widths below a pixel become fainter,
+/// not thinner.
 struct Stroke {
   Colour colour = {};  ///< black unless it says otherwise
   double width = 0;    ///< [pt]
@@ -74,8 +75,8 @@ struct Polygon {
 struct Polyline {
   std::vector<Vec<2>> points;  ///< [pt]
   Stroke stroke = {};          ///< colour and width
-  /// Lengths of dash, gap, dash, gap, ... [pt]; empty is solid. Round caps lengthen a dash by the
-  /// width.
+  /// Lengths of dash, gap, dash, gap, ... [pt]; empty is solid. Round caps lengthen a dash by
+  /// the width.
   std::vector<double> dashes = {};
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Plots, colour bars and legends. They only add items to a display list.
@@ -24,8 +25,8 @@ struct Ticks {
   int exponent = 0;         ///< a label times 10^exponent is the value
 };
 
-/// Multiples of 1, 2 or 5 times a power of ten inside [low, high]: at least two, at most about
-/// `count`.
+/// Multiples of 1, 2 or 5 times a power of ten inside [low, high]: at least two, at most
+/// about `count`.
 /// @pre low < high, both finite; count >= 2
 Ticks nice_ticks(double low, double high, int count = 6);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// What a picture of a three-dimensional scene consists of: balls, tubes, lines, panes, a camera
@@ -105,8 +106,8 @@ struct Lights {
 };
 
 /// Lights that turn with the camera: the sun stands behind the viewer's left shoulder, the sky
-/// above and behind. For views from below, or wherever lights fixed in the world would shine at the
-/// lens.
+/// above and behind. For views from below, or wherever lights fixed in the world would shine at
+/// the lens.
 Lights over_the_shoulder(const Camera& camera);
 
 /// Numbers of sub-frames: pictures that are averaged into one, each with another sun, other lights

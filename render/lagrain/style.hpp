@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// One look for all figures: sizes for a journal page, colours that survive grey print.

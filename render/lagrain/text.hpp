@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Size of a line of text, for layouts. The markup of a label is a small part of TeX's:

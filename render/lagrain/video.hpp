@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// Videos from painted frames: through ffmpeg when it is installed, as numbered PNG files
-/// otherwise.
+/// Videos from painted frames: through ffmpeg when it is installed, as numbered PNG
+/// files otherwise.
 
 #include <lagrain/paint.hpp>
 

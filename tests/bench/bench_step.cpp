@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a step costs, and what it is worth: discs and spheres, settled and shaken, with the
 // triangulation and with linked cells. Every time stands beside the errors of the same run.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 /// @file
 /// What threads are worth: one simulation stepped by two threads, against two simulations stepped
 /// by one thread each at the same time. That is the fair bar on a machine whose cores share memory

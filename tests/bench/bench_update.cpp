@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 /// @file
 /// What an update of the triangulation costs against building it anew, in the plane and in space.
 ///

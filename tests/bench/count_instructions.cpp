@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Steps of a settled bed for callgrind, which counts instructions: the same on a busy machine.
 //
 //   valgrind --tool=callgrind --toggle-collect='*take_steps*'

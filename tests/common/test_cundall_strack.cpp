@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <lagrain/cundall_strack.hpp>
 
 #include <lagrain/random.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 /// @file
 /// Friction in motion, held against closed forms: inclines, skidding, oblique impacts.
 

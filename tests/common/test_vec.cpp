@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <lagrain/vec.hpp>
 
 #include <lagrain/random.hpp>
@@ -10,9 +11,7 @@ using namespace lagrain;
 
 namespace {
 
-Vec<3> embedded(const Vec<2>& v) {
-  return {v[0], v[1], 0};
-}
+Vec<3> embedded(const Vec<2>& v) { return {v[0], v[1], 0}; }
 
 }  // namespace
 

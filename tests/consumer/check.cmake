@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # cmake -D LAGRAIN=<build folder> -D WORK=<scratch folder> -D RENDER=<0|1> -D CXX=<compiler>
 #   -D GENERATOR=<CMake generator> -P check.cmake
 # Installs lagrain, builds the project beside this file (the examples, and the programs that READMEs

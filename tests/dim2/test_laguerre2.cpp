@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <lagrain/laguerre2.hpp>
 
 #include <lagrain/check.hpp>

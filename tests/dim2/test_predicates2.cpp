@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <lagrain/predicates2.hpp>
 
 #include <lagrain/random.hpp>
@@ -20,9 +21,7 @@ namespace {
 using Exact = CGAL::Gmpq;
 using Four = std::array<Site2, 4>;
 
-int sign(const Exact& value) {
-  return static_cast<int>(CGAL::sign(value));
-}
+int sign(const Exact& value) { return static_cast<int>(CGAL::sign(value)); }
 
 /// Twice the area, written differently from the code under test.
 Exact area(const Site2& a, const Site2& b, const Site2& c) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Sets of weighted sites that tests of space share, and what two triangulations are compared by.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <lagrain/predicates3.hpp>
 
 #include <lagrain/random.hpp>
@@ -21,9 +22,7 @@ namespace {
 using Exact = CGAL::Gmpq;
 using Five = std::array<Site3, 5>;
 
-int sign(const Exact& value) {
-  return static_cast<int>(CGAL::sign(value));
-}
+int sign(const Exact& value) { return static_cast<int>(CGAL::sign(value)); }
 
 Exact minor(const Exact& a, const Exact& b, const Exact& c, const Exact& d) {
   return a * d - b * c;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A first packing: 300 discs of two sizes fall into a box and come to rest. What there is stands in
 // the text of a scene; the program runs it and measures.
 // To build it: find_package(lagrain 0.1) and lagrain::scenes, as in CMakeLists.txt.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A contact law of your own: a spring that yields (Walton & Braun, J. Rheology 30 (1986) 949). The
 // stiffness is k1 under load and k2 > k1 afterwards, so a dent remains, and an impact has the
 // restitution sqrt(k1 / k2) at any speed. To build it: find_package(lagrain 0.1), lagrain::common.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A picture: discs at rest in a box, their Laguerre cells, and forces between them as lines, the
 // thicker the larger. One list of shapes is painted as PNG and as SVG, into the current folder.
 // To build it: find_package(lagrain 0.1 COMPONENTS render), lagrain::dim2 and lagrain::render, as

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The distinct element method as plainly as it can be said: plain_dem.hpp, beside this file, has
 // the paper's steps 1 to 5 as functions. Step 6, the loop, is here: discs, then spheres, fall into
 // a box and come to rest, and the floor carries their weight.
@@ -55,6 +56,4 @@ bool settles(int side, int layers) {
   return std::abs(carried / weight - 1) < 0.01 && dem.triangulation.hidden().empty();
 }
 
-int main() {
-  return settles<2>(15, 10) && settles<3>(4, 4) ? 0 : 1;
-}
+int main() { return settles<2>(15, 10) && settles<3>(4, 4) ? 0 : 1; }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// The distinct element method on a dynamic triangulation, as plainly as it can be said: to be read

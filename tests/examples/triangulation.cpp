@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Only the triangulation, without any simulation: of five discs in the plane one moves, some grow,
 // and a sixth comes and goes. In space it is the same, with <lagrain/triangulation3.hpp>.
 // To build it: find_package(lagrain 0.1) and lagrain::dim2, as in CMakeLists.txt.

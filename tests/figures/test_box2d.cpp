@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Box2D as an engine for our scenes: its units, its walls, its forces; and the closed forms that
 // both engines are held against.
 
@@ -35,9 +36,7 @@ Scene<2> small_scene() {
   return scene;
 }
 
-Wall<2> ground() {
-  return Wall<2>::half_space("floor", {0, 0}, {0, 1});
-}
+Wall<2> ground() { return Wall<2>::half_space("floor", {0, 0}, {0, 1}); }
 
 std::unique_ptr<Box2dWorld> world_of(const Scene<2>& scene, const Box2dSettings& settings = {}) {
   return std::make_unique<Box2dWorld>(*make_run(scene, 1), settings);

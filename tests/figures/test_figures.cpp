@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The figures' pictures are read as numbers: what they claim is checked against brute force and
 // against closed forms.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Hard cases: every one runs right or stops with an error that says whose fault it is. None may
 // crash, hang, lose a grain or go on with what is no number.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the report's figures of predicates and of updates claim, without their times.
 
 #include "dense_packing.hpp"

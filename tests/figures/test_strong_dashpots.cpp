@@ -1,6 +1,6 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Strong dashpots at the step that is called safe. Where it was too long, forces in a crystal
 // alternated from step to step for ever, and walls reported nonsense.
-
 
 #include <support/space.hpp>
 

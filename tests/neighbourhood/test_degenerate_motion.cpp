@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Scenes in which centres stand on lines, planes and lattices, exactly or nearly, and leave them.
 
 #include <lagrain/triangulation_neighbourhood.hpp>

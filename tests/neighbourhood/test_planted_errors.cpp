@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Whatever is kept beside the simplices because it is faster: an audit finds nothing wrong with it,
 // and names an error that is planted in it.
 

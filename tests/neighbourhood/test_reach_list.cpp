@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <lagrain/reach_list.hpp>
 
 #include <lagrain/triangulation2.hpp>

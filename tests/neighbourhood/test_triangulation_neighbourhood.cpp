@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <lagrain/triangulation_neighbourhood.hpp>
 
 #include <lagrain/cell_grid.hpp>

@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// What the comparisons with CGAL share in every dimension; cgal2.hpp and cgal3.hpp know CGAL's
-/// triangulations.
+/// What the comparisons with CGAL share in every dimension; cgal2.hpp and cgal3.hpp know
+/// CGAL's triangulations.
 
 #include "support/site_sets.hpp"
 
@@ -47,9 +48,7 @@ struct PowerSides {
   bool ties() const { return std::find(tied.begin(), tied.end(), true) != tied.end(); }
 };
 
-inline Edge sorted(int i, int j) {
-  return {std::min(i, j), std::max(i, j)};
-}
+inline Edge sorted(int i, int j) { return {std::min(i, j), std::max(i, j)}; }
 
 template <int Dim>
 void sort_all(Answer<Dim>& answer) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 /// Laguerre cells in space against the radical cells of Voro++, which finds them without a
 /// triangulation, by cutting each with all sites near enough.
 

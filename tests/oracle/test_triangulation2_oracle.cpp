@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 /// Triangulation<2> against CGAL. CGAL breaks ties by coordinates and we by ids: where there are
 /// none the edges are the same, where there are, each of our edges passes CGAL's power test and
 /// each edge with a dual of positive length is there.

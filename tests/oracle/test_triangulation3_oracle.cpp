@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 /// Triangulation<3> and its predicates against CGAL. CGAL breaks ties by coordinates and we by ids:
 /// where there are none the edges and tetrahedra are the same, where there are, each of our
 /// tetrahedra passes CGAL's power test and each edge that no choice can avoid is there.
@@ -68,9 +69,7 @@ std::vector<test3::Sites> tied_kinds(Random& random) {
 }
 
 /// doctest would print CGAL's own type with the help of a library that nobody links.
-int as_number(CGAL::Sign sign) {
-  return static_cast<int>(sign);
-}
+int as_number(CGAL::Sign sign) { return static_cast<int>(sign); }
 
 }  // namespace
 

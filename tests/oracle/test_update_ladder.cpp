@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 /// Every rung of the ladder of updates, in the plane and in space: long random scripts on small
 /// sets, with exact ties and without. After each update T is compared with a build from nothing and
 /// with CGAL, and its edges with its neighbours.
@@ -38,9 +39,7 @@ std::vector<test::Triple> simplices(const Triangulation<2>& t) {
   return list;
 }
 
-std::vector<test::Four> simplices(const Triangulation<3>& t) {
-  return test::tetrahedra(t);
-}
+std::vector<test::Four> simplices(const Triangulation<3>& t) { return test::tetrahedra(t); }
 
 template <int Dim>
 std::vector<int> present(const Triangulation<Dim>& t) {
@@ -89,7 +88,7 @@ class Script {
   }
 
   const test::SiteSet<Dim>& sites() const { return sites_; }
-  const Triangulation<Dim>& triangulation() const { return t_; }
+  Triangulation<Dim>& triangulation() { return t_; }
 
   UpdateReport update() {
     const auto ids = present(t_);
@@ -310,7 +309,7 @@ template <int Dim>
 void play(int seed, int steps, Totals& totals) {
   CAPTURE(seed);
   Script<Dim> script(seed);
-  const auto& t = script.triangulation();
+  auto& t = script.triangulation();
   for (int step = 0; step < steps; ++step) {
     CAPTURE(step);
     totals.tiny_or_flat += tiny_or_flat(t);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "figure.hpp"
 
 #include <lagrain/check.hpp>
@@ -26,17 +27,13 @@ FigureResult first(const FigureOptions& options) {
           {options.out / "one.png", options.out / "one.pdf"},
           {"one.csv"}};
 }
-FigureResult second(const FigureOptions&) {
-  return {"Two", {}, {}, {"two.png", "two.mp4"}, {}};
-}
+FigureResult second(const FigureOptions&) { return {"Two", {}, {}, {"two.png", "two.mp4"}, {}}; }
 FigureResult costs(const FigureOptions&) {
   FigureResult result;
   result.tables = {{"Time & error", {"law", "ns"}, {{"linear", "7"}, {"Hertz", "9"}}}};
   return result;
 }
-FigureResult broken(const FigureOptions&) {
-  throw SimulationError("t = 1 s: grain 3 is lost");
-}
+FigureResult broken(const FigureOptions&) { throw SimulationError("t = 1 s: grain 3 is lost"); }
 
 const std::vector<Figure> kFigures{{1, "First", first}, {2, "Second", second}};
 

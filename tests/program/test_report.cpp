@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The speed report: its tables, the contenders that it is built from, and LAMMPS if it is there.
 
 #include "beds.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Are the pictures of all kinds of OpenGL contexts the same bits? A process has one context, so
 // each kind paints in a process of its own. This is a program of its own because it has to fork()
 // before the first picture, whose painter starts threads.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <lagrain/paint.hpp>
 
 #include "paint_cairo.hpp"
@@ -38,9 +39,7 @@ namespace {
 
 constexpr Colour kBlack{0, 0, 0, 255};
 
-DisplayList page(double size) {
-  return {size, size};
-}
+DisplayList page(double size) { return {size, size}; }
 
 // Ink of one item on a page of 64 pt at 72 dots per inch: one pixel is one point.
 double ink_of(const Item& item, Quality quality = Quality::still) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <lagrain/scene3.hpp>
 
 #include "paint3_gl.hpp"
@@ -63,9 +64,7 @@ int brightness(const Image& image, int x, int y) {
 }
 
 // Middle pixel of an odd number of rows and columns.
-double middle(const std::vector<double>& depths) {
-  return depths[depths.size() / 2];
-}
+double middle(const std::vector<double>& depths) { return depths[depths.size() / 2]; }
 
 // Column and row of a picture in which a point of the scene is seen.
 struct Pixel {
@@ -258,8 +257,8 @@ TEST_SUITE("scene3") {
       const std::vector<double> depths = detail::depths(one, 101, 101);
 
       CHECK(relative_error(middle(depths), 4.7) < 1e-6);
-      CHECK(relative_error(depths[50 * 101 + 62], 4.7) < 1e-6);            // flat
-      CHECK(depths[50 * 101 + 76] > 4.71);                                 // the ball beyond
+      CHECK(relative_error(depths[50 * 101 + 62], 4.7) < 1e-6);  // flat
+      CHECK(depths[50 * 101 + 76] > 4.71);                       // the ball beyond
 
       // The face has the ball's colour, a little darker, all over.
       const Image image = paint_scene3(one, 101, 101);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 /// @file
 /// The page that explains scene files (common/scenes/README.md) and the reader of scene files say
 /// the same. The test asks the reader: it puts every key into every table, with a value that no key

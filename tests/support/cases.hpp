@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// How many cases a property test runs: few by default, many with `tests/run --nightly`.
@@ -13,8 +14,6 @@ inline bool nightly() {
 }
 
 /// `usual` seeds, steps or sizes by default, `many` in the nightly set.
-inline int cases(int usual, int many) {
-  return nightly() ? many : usual;
-}
+inline int cases(int usual, int many) { return nightly() ? many : usual; }
 
 }  // namespace lagrain::test

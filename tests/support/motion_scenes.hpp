@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Clouds and scenes that try a neighbourhood: every list is compared with brute force, every

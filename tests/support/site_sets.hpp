@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// What tests of the triangulation share in every dimension: sets of weighted sites, displaced
@@ -145,7 +146,7 @@ int missed_contacts(const Triangulation<Dim>& t, const SiteSet<Dim>& s) {
   return missed;
 }
 
-/// Whether two triangulations agree: simplex for simplex, edge for edge, hidden site for hidden site.
+/// Whether two triangulations agree: simplex for simplex, edge for edge, hidden for hidden site.
 template <int Dim>
 bool same(const Triangulation<Dim>& a, const Triangulation<Dim>& b);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// What holds of T in every dimension: each law checks one set of sites. Where dimensions differ

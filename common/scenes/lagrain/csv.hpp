@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Comma-separated values: the first line names the columns as name[unit], and numbers read back

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// How frames and series are spelled in the folder of a run. A new format is a class beside

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// What a run shows of itself: frames, which are states of all grains, and samples, which are rows

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// The folder that a run leaves behind.
@@ -11,8 +12,7 @@
 ///
 /// The first line of a CSV file is name[unit]. Numbers read back bit for bit. series.csv and
 /// frames.csv grow row by row, and what has been written stays, however the program ends; every
-/// other file is written
-/// whole or not at all.
+/// other file is written whole or not at all.
 
 #include <lagrain/files.hpp>
 #include <lagrain/format.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// A scene: what a TOML file says, as plain numbers in SI. The physics lives in types; make_run
@@ -158,8 +159,8 @@ Scene<Dim> read_scene(const std::filesystem::path& file);
 template <int Dim>
 Scene<Dim> parse_scene(std::string_view text, const std::string& name);
 
-/// The scene as TOML with every default filled in. Reading it back gives the same numbers, bit for
-/// bit.
+/// The scene as TOML with every default filled in. Reading it back gives the same numbers, bit
+/// for bit.
 template <int Dim>
 std::string to_toml(const Scene<Dim>& scene);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
 /// Quantities as people write them: "8 mm", "2650 kg/m^3", "1e7 N/m". Inside everything is SI;
