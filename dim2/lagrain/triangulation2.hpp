@@ -54,8 +54,8 @@ struct detail::TriangulationParts<2> {
 /// 1. Put the moved sites in place. Triangles that turned inside out would spoil the triangulation,
 ///    so a cover of them by moved sites is first taken out at the old places.
 /// 2. Flip edges that are not locally regular. Edges to the infinite vertex follow the same rule,
-///    so the hull needs no code of its own. An edge that cannot be flipped has a reflex end, which is
-///    hidden by the three other sites: it is taken out (in the plane this is the whole remedy).
+///    so the hull needs no code of its own. An edge that cannot be flipped has a reflex end, which
+///    is hidden by the three other sites: it is taken out (in the plane this is the whole remedy).
 /// 3. Positive triangles and a convex hull that goes round once make a triangulation; with all
 ///    edges locally regular it is the regular one. If the hull fails the test, build anew.
 /// 4. Insert what was taken out, and try the hidden sites.
