@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// Brute force: the reference that every other neighbourhood is held against.
+/// `AllPairs` compares every grain with every other: it is the reference that every other
+/// neighbourhood is held against.
 
 #include <lagrain/neighbourhood.hpp>
 

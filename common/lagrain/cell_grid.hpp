@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// Linked cells: what most codes use.
+/// `CellGrid` finds near pairs with linked cells, as most codes do.
 
 #include <lagrain/neighbourhood.hpp>
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// What a pass over contacts reads, and what it adds up.
+/// `ContactScene` holds what a pass over contacts reads: grains, walls, laws. `Tally` holds what it
+/// adds up.
 
 #include <lagrain/law_table.hpp>
 #include <lagrain/needs.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// The deepest overlap of a step: looked for, and reported, when one has gone beyond what the
-/// run allows.
+/// When an overlap exceeds what the run allows, these functions find the deepest one and end the
+/// run with the names of the two.
 
 #include <lagrain/check.hpp>
 #include <lagrain/contact_scene.hpp>

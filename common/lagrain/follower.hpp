@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// How T follows the grains by flips: new references for those that are about to leave their skins.
+/// `Follower` keeps the regular triangulation T up to date by flips: it gives new references to the
+/// grains that are about to leave their skins.
 
 #include <lagrain/contact_search.hpp>
 #include <lagrain/lazy_sites.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// Hertz contact with viscous damping.
+/// `Hertz` is the contact of elastic spheres with viscous damping.
 
 #include <lagrain/contact_law.hpp>
 #include <lagrain/restitution.hpp>

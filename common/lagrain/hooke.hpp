@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// Linear spring and dashpot.
+/// `LinearSpring` is a linear spring and dashpot.
 
 #include <lagrain/contact_law.hpp>
 #include <lagrain/restitution.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// Which law acts between which materials.
+/// `LawTable` gives the contact law for each pair of materials.
 
 #include <lagrain/check.hpp>
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// A triangulation that stands still while its grains move within their skins.
+/// `LazySites` holds the regular triangulation T with a reference place and a skin for each grain:
+/// T need not change while the grains stay within their skins.
 
 #include <lagrain/random.hpp>
 #include <lagrain/skins.hpp>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// How T is used where grains fly: built with wide skins, and left as it is.
+/// `Leaper` builds the regular triangulation T anew, with wide skins, where many grains fly, and
+/// leaves it as it is.
 
 #include <lagrain/lazy_sites.hpp>
 #include <lagrain/reach_list.hpp>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// The flat lists that the step loop runs over, and when they must be made anew.
+/// `NearList` holds the pairs that are close enough to touch soon, which the step loop runs over,
+/// and knows when it has to be made anew.
 
 #include <lagrain/check.hpp>
 #include <lagrain/contact_search.hpp>

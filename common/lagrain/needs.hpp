@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// What a model asks of the simulation, so that a scene carries only the state it needs.
+/// `Needs` says which state a contact law requires, so that a scene carries only what it needs.
 
 namespace lagrain {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// What one measures on a simulation: energies and their ledger, momentum, overlaps, coordination,
-/// packing density.
+/// These functions measure a simulation: energies and their ledger, momentum, overlaps,
+/// coordination, packing density.
 
 #include <lagrain/grains.hpp>
 #include <lagrain/simulation.hpp>

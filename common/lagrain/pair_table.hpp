@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// Listed pairs and what their contacts remember.
+/// `PairTable` holds listed pairs and what their contacts remember.
 
 #include <lagrain/contact_law.hpp>
 #include <lagrain/neighbourhood.hpp>

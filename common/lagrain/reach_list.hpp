@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// Which balls meet, found by walking in a regular triangulation.
+/// `ReachList` lists all pairs of balls that meet, found by walks along the edges of a
+/// regular triangulation.
 
 #include <lagrain/contact_search.hpp>
 #include <lagrain/neighbourhood.hpp>

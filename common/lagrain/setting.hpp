@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// What a simulation is told besides its grains, walls and laws, and what it counts.
+/// `Setting` holds what a simulation is told besides its grains, walls and laws; `EnergyFlow` and
+/// `PhaseTimes` are what it counts.
 
 #include <lagrain/contact_kernel.hpp>
 #include <lagrain/vec.hpp>

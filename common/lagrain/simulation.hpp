@@ -37,7 +37,7 @@ namespace lagrain {
 /// It follows the scheme of Ferrez & Liebling (2000), section 3:
 ///
 ///     1  Construct the initial triangulation T      the constructor
-///     2  Detect contacts along the edges of T       ContactForces::detect_and_apply_law
+///     2  Detect contacts along the edges of T       evaluate_forces, by ContactForces
 ///     3  Apply some law at every contact point      the same, contact by contact
 ///     4  Update the trajectories                    update_trajectories
 ///     5  Update T with local operations             update_triangulation

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// What a simulation demands of what it is made from.
+/// These checks refuse a simulation whose materials, time step or integrator do not fit.
 
 #include <lagrain/check.hpp>
 #include <lagrain/grains.hpp>

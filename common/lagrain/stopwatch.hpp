@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// Wall-clock time.
+/// `Stopwatch` measures wall-clock time.
 
 #include <chrono>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// Work shared by threads.
+/// `share_among_threads` divides work among threads.
 
 #include <cstddef>
 

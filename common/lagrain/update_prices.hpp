@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// What it costs to keep T up to date: the numbers by which a triangulation chooses whether it
-/// follows the grains or leaps.
+/// These prices decide whether the regular triangulation T is moved grain by grain or built anew.
 
 #include <cstdint>
 

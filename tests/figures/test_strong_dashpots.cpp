@@ -2,6 +2,8 @@
 // Strong dashpots at the step that is called safe. Where it was too long, forces in a crystal
 // alternated from step to step for ever, and walls reported nonsense.
 
+#include <lagrain/run.hpp>
+
 #include <support/space.hpp>
 
 #include <doctest/doctest.h>

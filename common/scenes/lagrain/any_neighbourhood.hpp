@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// A neighbourhood chosen at run time.
+/// `AnyNeighbourhood` holds a neighbourhood that was chosen at run time.
 
 #include <lagrain/neighbourhood.hpp>
 #include <lagrain/triangulation_neighbourhood.hpp>

@@ -2,7 +2,7 @@
 #pragma once
 /// @file
 /// How frames and series are spelled in the folder of a run. A new format is a class beside
-/// CsvFormat, and a line in `record` (record.cpp) that makes it.
+/// CsvFormat, and a line in the constructor of `Recorder` (record.cpp).
 
 #include <lagrain/files.hpp>
 #include <lagrain/frame.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// The folder that a run leaves behind.
+/// `record` writes the folder of a run.
 ///
 ///     scene.toml       the scene with every default filled in; reads back to the same run
 ///     series.csv       energies, contacts, overlaps and wall forces against time

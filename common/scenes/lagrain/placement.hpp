@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// From a scene to its grains: who is where at time 0.
+/// `place_grains` decides where the grains of a scene are at time 0.
 
 #include <lagrain/grains.hpp>
 #include <lagrain/scene.hpp>

@@ -129,7 +129,7 @@ struct Scene {
   std::vector<Material> materials;       ///< all that occur
   std::vector<Fill<Dim>> fills;          ///< groups of grains
   std::vector<PlacedGrain<Dim>> grains;  ///< placed by hand
-  std::vector<Wall<Dim>> walls;          ///<
+  std::vector<Wall<Dim>> walls;          ///< single ones, then the sides of boxes
   OutputPlan output;                     ///< what is written
 
   /// "file:line: key: message", with what is known of it.
