@@ -5,8 +5,9 @@
 /// types at run time, and what is compiled in advance are all made from the rows of this file.
 ///
 /// To add a normal law, write its header and its test, include it here, add a line to
-/// LAGRAIN_NORMAL_LAWS, and give it an entry with its keys below. Without the entry nothing compiles. A program of one's own that
-/// brings its law along needs none of this: `Simulation` takes any type that is a ContactLaw.
+/// LAGRAIN_NORMAL_LAWS, and give it an entry with its keys below. Without the entry nothing
+/// compiles. A program of one's own that brings its law along needs none of this: `Simulation`
+/// takes any type that is a ContactLaw.
 
 #include <lagrain/cundall_strack.hpp>
 #include <lagrain/hertz.hpp>
