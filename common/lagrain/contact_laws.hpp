@@ -172,12 +172,14 @@ struct FrictionLawEntry<CundallStrack> {
   }
 };
 
+/// @cond
 #define LAGRAIN_IS_LAW(word, Normal, Friction) \
   static_assert(ContactLaw<Friction<Normal>, 2> && ContactLaw<Friction<Normal>, 3>);
 #define LAGRAIN_ARE_LAWS(word, Friction) LAGRAIN_NORMAL_LAWS(LAGRAIN_IS_LAW, Friction)
 LAGRAIN_FRICTION_LAWS(LAGRAIN_ARE_LAWS)
 #undef LAGRAIN_ARE_LAWS
 #undef LAGRAIN_IS_LAW
+/// @endcond
 
 /// An entry as data.
 struct LawDescription {
