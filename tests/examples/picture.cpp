@@ -4,7 +4,7 @@
 // To build it: find_package(lagrain 0.1 COMPONENTS render), lagrain::dim2 and lagrain::render, as
 // in CMakeLists.txt.
 
-#include <lagrain/cundall_strack.hpp>
+#include <lagrain/compiled_kernels.hpp>
 #include <lagrain/laguerre2.hpp>
 #include <lagrain/paint.hpp>
 #include <lagrain/simulation.hpp>

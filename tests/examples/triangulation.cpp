@@ -13,8 +13,7 @@ namespace {
 bool all_hold = true;
 
 /// Prints what T is like now, and whether it is what the example says.
-void show(const char* what, const lagrain::Triangulation<2>& t, std::size_t edges,
-          std::size_t hidden) {
+void show(const char* what, lagrain::Triangulation<2>& t, std::size_t edges, std::size_t hidden) {
   std::printf("%-26s %zu edges, %zu hidden\n", what, t.edges().size(), t.hidden().size());
   all_hold = all_hold && t.edges().size() == edges && t.hidden().size() == hidden;
 }
