@@ -238,14 +238,15 @@ cairo_status_t append(void* to, const unsigned char* bytes, unsigned count) {
 }
 
 // Cairo numbers what it draws through the life of the process and writes the numbers into SVG as
-// names. Counting from one instead makes equal pictures equal files.
+// names (since 1.18 as sources). Counting from one instead makes equal pictures equal files.
 std::string renumbered(const std::string& svg) {
   std::map<std::string, std::string> names;
   std::string out;
   out.reserve(svg.size());
   for (std::size_t at = 0; at < svg.size();) {
     std::size_t end = at;
-    for (const std::string_view word : {"\"surface", "\"image", "\"#image"}) {
+    for (const std::string_view word :
+         {"\"surface", "\"image", "\"#image", "\"source-", "\"#source-"}) {
       if (svg.compare(at, word.size(), word) == 0) end = at + word.size();
     }
     std::size_t digits = end;
