@@ -72,7 +72,7 @@ class Sums {
 /// The code of a sweep, for contacts by kLanes<Real> at once. Inlined as a whole into functions for
 /// one instruction set each.
 ///
-/// @tparam kOneLaw  all grains are of material 0: the common case, and the fast one
+/// @tparam kOneLaw  one law holds between all grains: the common case, and the fast one
 template <int Dim, class Law, class Real, bool kOneLaw>
 struct Sweep {
   static constexpr Needs needs = Law::needs;

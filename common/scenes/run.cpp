@@ -50,10 +50,10 @@ void Run<Dim>::advance_to(double t) {
 
 template <int Dim>
 void Run<Dim>::check_contacts() {
-  const bool fresh = refreshes() != refreshes_seen_;
+  const bool listed_anew = refreshes() != refreshes_seen_;
   refreshes_seen_ = refreshes();
   constexpr int kEveryStepLimit = 1000;
-  const bool due = count() <= kEveryStepLimit || fresh || steps() % scene_.audit_every == 0;
+  const bool due = count() <= kEveryStepLimit || listed_anew || steps() % scene_.audit_every == 0;
   // A fourth-order step ends with a drift after its last forces: a list that expired there is
   // renewed before anybody reads it.
   if (due && near_is_valid()) audit_.check(positions(), radii(), near_pairs());

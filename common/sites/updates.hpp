@@ -138,9 +138,7 @@ template <int Dim>
 void MovingSites<Dim>::begin() {
   report_ = {};
   edges_.begin_update();
-#ifdef LAGRAIN_AUDIT
-  edges_.remember();
-#endif
+  if constexpr (kAudited) edges_.remember();
 }
 
 template <int Dim>
@@ -154,11 +152,11 @@ UpdateReport MovingSites<Dim>::finish() {
 /// Does nothing, unless lagrain was built to audit itself.
 template <int Dim>
 void MovingSites<Dim>::expect_valid() const {
-#ifdef LAGRAIN_AUDIT
-  if (const auto defects = self().audit(); !defects.empty()) {
-    throw AuditError("Triangulation<" + std::to_string(Dim) + ">: " + defects.front().sentence);
+  if constexpr (kAudited) {
+    if (const auto defects = self().audit(); !defects.empty()) {
+      throw AuditError("Triangulation<" + std::to_string(Dim) + ">: " + defects.front().sentence);
+    }
   }
-#endif
 }
 
 // ---- Building ----------------------------------------------------------------------------------
