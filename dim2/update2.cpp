@@ -443,30 +443,11 @@ int Triangulation<2>::locate(int site, int hint) const {
 /// @pre T is regular
 /// @return false if the site is hidden itself, which then has a fresh hint
 bool Triangulation<2>::insert_visible(int site) {
-  const int start = locate(site, visible_from(site));
-  if (!topology_.infinite(start) && !conflict(start, site)) {
-    topology_.set_corner_of(site, -2 - topology_.vertex(4 * start));
-    return false;
-  }
+  if (!find_hole(site)) return false;
   // Notes of sites: 2 on the rim of the hole, 1 inside it.
   const auto note = [&](int id) -> int& { return site_note_[index(id)]; };
-  topology_.clear_marks();
-  topology_.set_mark(start);
-  hole_.assign(1, start);
-  rim_.clear();
-  for (std::size_t k = 0; k < hole_.size(); ++k) {
-    const int triangle = hole_[k];
-    for (int corner = 4 * triangle; corner < 4 * triangle + 3; ++corner) {
-      const int beyond = topology_.twin(corner) >> 2;
-      if (topology_.marked(beyond)) continue;
-      if (conflict(beyond, site)) {
-        topology_.set_mark(beyond);
-        hole_.push_back(beyond);
-      } else {
-        rim_.push_back(corner);
-        if (const int id = topology_.source(corner); id >= 0) note(id) = 2;
-      }
-    }
+  for (const int corner : rim_) {
+    if (const int id = topology_.source(corner); id >= 0) note(id) = 2;
   }
   ring_.clear();
   for (const int triangle : hole_) {

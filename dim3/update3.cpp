@@ -423,11 +423,6 @@ void Triangulation<3>::undo_flips() {
   }
 }
 
-void Triangulation<3>::sort_unique(std::vector<int>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
 /// Makes T regular after the sites in moved_ have moved.
 bool Triangulation<3>::repair() {
   collect_around(moved_);
@@ -550,27 +545,7 @@ bool Triangulation<3>::extract_inverted() {
 /// @pre T is regular
 /// @return false if the site is hidden itself, which then has a fresh hint
 bool Triangulation<3>::insert_visible(int site) {
-  const int start = locate(site, visible_from(site));
-  if (!topology_.infinite(start) && !conflict(start, site)) {
-    topology_.set_corner_of(site, -2 - topology_.vertex(4 * start));
-    return false;
-  }
-  topology_.clear_marks();
-  hole_.assign(1, start);
-  rim_.clear();
-  topology_.set_mark(start);
-  for (std::size_t k = 0; k < hole_.size(); ++k) {
-    for (int corner = 4 * hole_[k]; corner < 4 * hole_[k] + 4; ++corner) {
-      const int beyond = topology_.twin(corner) >> 2;
-      if (topology_.marked(beyond)) continue;
-      if (conflict(beyond, site)) {
-        topology_.set_mark(beyond);
-        hole_.push_back(beyond);
-      } else {
-        rim_.push_back(corner);
-      }
-    }
-  }
+  if (!find_hole(site)) return false;
   // Notes of sites: 2 on the rim of the hole, 1 inside it.
   const auto note = [&](int v, int value) {
     if (v >= 0) site_note_[index(v)] = value;

@@ -38,12 +38,6 @@ struct TriangulationCost {
   std::int64_t walks = 0;     ///< grains that left wide skins
 };
 
-/// Sorts a list, and leaves each of its numbers once.
-inline void sort_unique(std::vector<int>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
 /// T, and for each grain its reference, its skin and where it stands in an update (skins.hpp has
 /// the symbols). References are in a frame that drifts with the grains, because T does not change
 /// when everything moves together.

@@ -158,6 +158,7 @@ class MovingSites {
   void rebuild_by_insertion();
   void insert_all(std::span<const int> order, const Site* away);
   void place_auxiliaries(Simplex& simplex, const Site* away);
+  bool find_hole(int site);
   void sort_simplices(std::span<const int> site_order);
   void push(int corner);
   void push_simplex(int simplex);

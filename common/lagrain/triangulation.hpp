@@ -10,11 +10,19 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <concepts>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace lagrain {
+
+/// Sorts a list of sites or simplices, and leaves each of them once.
+inline void sort_unique(std::vector<int>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
 
 /// Regular (weighted Delaunay) triangulation of moving sites; specialised per dimension.
 template <int Dim>

@@ -31,9 +31,7 @@ std::vector<SeriesColumn> series_columns(const Run<Dim>& run) {
 }
 
 template <int Dim>
-Sample sample_of(const Run<Dim>& run) {
-  const Ledger now = run.ledger();
-  const ContactStatistics s = run.statistics();
+Sample sample_of(const Run<Dim>& run, const Ledger& now, const ContactStatistics& s) {
   Sample row{run.time(),        now.kinetic,
              now.gravity,       now.elastic,
              now.wall_work,     now.dashpot,
@@ -52,7 +50,7 @@ Sample sample_of(const Run<Dim>& run) {
 
 template std::vector<SeriesColumn> series_columns<2>(const Run<2>&);
 template std::vector<SeriesColumn> series_columns<3>(const Run<3>&);
-template Sample sample_of<2>(const Run<2>&);
-template Sample sample_of<3>(const Run<3>&);
+template Sample sample_of<2>(const Run<2>&, const Ledger&, const ContactStatistics&);
+template Sample sample_of<3>(const Run<3>&, const Ledger&, const ContactStatistics&);
 
 }  // namespace lagrain

@@ -184,7 +184,6 @@ class Placer {
     grain.material = material;
     occupied_.add(static_cast<int>(placed_.grains.size()), grain.position, grain.radius);
     placed_.grains.push_back(grain);
-    placed_.material.push_back(material);
     placed_.group.push_back(group);
   }
 

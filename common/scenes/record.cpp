@@ -56,11 +56,8 @@ struct Largest {
   double residual = 0;  // [J]
   double energy = 0;    // in the ledger [J]
 
-  template <int Dim>
-  void look_at(const Run<Dim>& run) {
-    const Ledger now = run.ledger();
-    const Ledger& start = run.start();
-    overlap = std::max(overlap, run.statistics().largest_overlap);
+  void look_at(const Ledger& now, const Ledger& start, const ContactStatistics& statistics) {
+    overlap = std::max(overlap, statistics.largest_overlap);
     residual = std::max(residual, std::abs(lagrain::residual(now, start)));
     for (const double e : {now.kinetic, now.gravity - start.gravity, now.elastic, now.wall_work,
                            now.dashpot, now.friction}) {
@@ -140,9 +137,11 @@ class Recorder {
   }
 
   void write_sample() {
-    const Sample sample = sample_of(run_);
+    const Ledger now = run_.ledger();
+    const ContactStatistics statistics = run_.statistics();
+    const Sample sample = sample_of(run_, now, statistics);
     for (auto& format : formats_) format->add_sample(sample);
-    largest_.look_at(run_);
+    largest_.look_at(now, run_.start(), statistics);
     last_sample_ = run_.steps();
   }
 

@@ -16,8 +16,9 @@
 namespace lagrain {
 
 template <int Dim>
-Run<Dim>::Run(Scene<Dim> scene, std::vector<int> materials, std::vector<int> groups)
-    : scene_(std::move(scene)), materials_(std::move(materials)), groups_(std::move(groups)) {
+Run<Dim>::Run(Scene<Dim> scene, Placement<Dim> placement)
+    : scene_(std::move(scene)), groups_(std::move(placement.group)) {
+  for (const Grain<Dim>& grain : placement.grains) materials_.push_back(grain.material);
   // A duration of whole steps must not gain one by rounding.
   steps_planned_ = static_cast<std::int64_t>(
       std::ceil(scene_.duration / scene_.time_step.seconds * (1 - 1e-12)));

@@ -23,7 +23,7 @@ class SimulationRun final : public Run<Dim> {
   SimulationRun(Scene<Dim> scene, Placement<Dim> placement, Grains<Dim, Law::needs> grains,
                 LawTable<Law> laws, std::vector<Wall<Dim>> walls, TimeScales scales,
                 AnyNeighbourhood<Dim> neighbourhood)
-      : Run<Dim>(scene, std::move(placement.material), std::move(placement.group)),
+      : Run<Dim>(scene, std::move(placement)),
         scales_(scales),
         sim_(std::move(grains), std::move(laws), std::move(walls),
              {scene.gravity, scene.time_step.seconds, scene.largest_overlap},

@@ -294,6 +294,37 @@ void MovingSites<Dim>::place_auxiliaries(Simplex& simplex, const Site* away) {
   }
 }
 
+/// Fills hole_ with the simplices in conflict with a site that has none, all of them marked, and
+/// rim_ with their corners opposite to the others. They hang together, so a walk finds one, and
+/// the rest are found from neighbour to neighbour.
+/// @pre T is regular
+/// @return false if there is none: the site is hidden, and has a fresh hint
+template <int Dim>
+bool MovingSites<Dim>::find_hole(int site) {
+  const int start = self().locate(site, visible_from(site));
+  if (!topology_.infinite(start) && !self().conflict(start, site)) {
+    topology_.set_corner_of(site, -2 - topology_.vertex(4 * start));
+    return false;
+  }
+  topology_.clear_marks();
+  topology_.set_mark(start);
+  hole_.assign(1, start);
+  rim_.clear();
+  for (std::size_t k = 0; k < hole_.size(); ++k) {
+    for (int corner = 4 * hole_[k]; corner <= 4 * hole_[k] + Dim; ++corner) {
+      const int beyond = topology_.twin(corner) >> 2;
+      if (topology_.marked(beyond)) continue;
+      if (self().conflict(beyond, site)) {
+        topology_.set_mark(beyond);
+        hole_.push_back(beyond);
+      } else {
+        rim_.push_back(corner);
+      }
+    }
+  }
+  return true;
+}
+
 /// Puts the simplices into memory in the order of their first site, so that what passes over all of
 /// them finds neighbours near each other.
 template <int Dim>

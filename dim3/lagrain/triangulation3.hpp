@@ -187,7 +187,6 @@ class Triangulation<3> : public detail::MovingSites<3> {
   bool unstick(int corner);
   void unpinch(std::vector<int>& cavity);
   bool flip_to_regular();
-  static void sort_unique(std::vector<int>& list);
   void collect_around(std::span<const int> moved);
   void list_inverted();
   void see_hull_again();

@@ -181,4 +181,22 @@ void check_contracts(const SiteSet<Dim>& s) {
   CHECK_AS_BUILT(t, s);
 }
 
+/// A build sorts sites at the edge of numbers, one of them far away from the others.
+template <int Dim>
+void check_edge_of_numbers() {
+  Random random(3);
+  for (const double size : {1e300, 1.0, 1e-310}) {
+    CAPTURE(size);
+    Columns<Dim> x(Dim, 100);
+    for (double& coordinate : x.reshaped()) coordinate = random.uniform(-size, size);
+    x.col(7) *= size < 1 ? 1e300 : 1e7;
+
+    Triangulation<Dim> t;
+    t.build(x, Eigen::VectorXd::Zero(100));
+
+    CHECK(t.hidden().empty());
+    CHECK(audited(t) == "");
+  }
+}
+
 }  // namespace lagrain::test

@@ -45,7 +45,9 @@ template <int Dim>
 std::vector<SeriesColumn> series_columns(const Run<Dim>& run);
 
 /// The row of a run's series at this instant.
+/// @param now         the run's ledger
+/// @param statistics  of its contacts
 template <int Dim>
-Sample sample_of(const Run<Dim>& run);
+Sample sample_of(const Run<Dim>& run, const Ledger& now, const ContactStatistics& statistics);
 
 }  // namespace lagrain

@@ -14,7 +14,6 @@ namespace lagrain {
 template <int Dim>
 struct Placement {
   std::vector<Grain<Dim>> grains;  ///< N
-  std::vector<int> material;       ///< N: index into the scene's materials
   std::vector<int> group;  ///< N: index into the scene's fills; -1 for a grain placed by hand
 };
 

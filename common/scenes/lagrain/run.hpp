@@ -86,14 +86,14 @@ class Run {
   /// As it runs: the time step is in seconds.
   const Scene<Dim>& scene() const { return scene_; }
   double time_step() const { return scene_.time_step.seconds; }          ///< [s]
-  const std::vector<int>& materials() const { return materials_; }       ///< N, see Placement
+  const std::vector<int>& materials() const { return materials_; }       ///< N, of the scene's
   const std::vector<int>& groups() const { return groups_; }             ///< N, see Placement
   const Ledger& start() const { return start_; }                         ///< the ledger at time 0
   double energy_residual() const { return residual(ledger(), start_); }  ///< [J]
   const ContactAudit<Dim>& audit() const { return audit_; }  ///< what audits have found so far
 
  protected:
-  Run(Scene<Dim> scene, std::vector<int> materials, std::vector<int> groups);  ///< for make_run
+  Run(Scene<Dim> scene, Placement<Dim> placement);  ///< for make_run
   /// To be called at the end of the constructor.
   void started();
 
