@@ -97,7 +97,7 @@ void Box2dWorld::add_wall(const Run<2>& run, const Wall<2>& wall) {
     from = foot - along;
     to = foot + along;
   } else {
-    const auto* segment = std::get_if<WallSegment<2>>(&wall.shape);
+    const auto* segment = std::get_if<WallSegment>(&wall.shape);
     LAGRAIN_EXPECTS(segment != nullptr, "wall \"" + wall.name + "\" is round");
     from = wall.point;
     to = wall.point + segment->along;

@@ -5,6 +5,7 @@
 
 #include <lagrain/contact_search.hpp>
 #include <lagrain/neighbourhood.hpp>
+#include <lagrain/pinned_grains.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -21,20 +22,24 @@ class ContactAudit {
   std::int64_t contacts() const { return contacts_; }  ///< contacts found from nothing
   std::int64_t missed() const { return missed_; }      ///< of these, not in the near list
 
-  /// @param near sorted pairs that claim to hold every contact at centres x [m]
-  void check(const Columns<Dim>& x, const Eigen::VectorXd& radius, const std::vector<Pair>& near) {
-    const std::vector<Pair>& touching = search_.find(x, radius);
+  /// @param near    sorted pairs that claim to hold every contact at centres x [m]
+  /// @param pinned  grains that touch no other one of them
+  void check(const Columns<Dim>& x, const Eigen::VectorXd& radius, const std::vector<Pair>& near,
+             const PinnedGrains& pinned = {}) {
+    touching_ = search_.find(x, radius);
+    pinned.drop_from(touching_);
     ++checks_;
-    contacts_ += static_cast<std::int64_t>(touching.size());
+    contacts_ += static_cast<std::int64_t>(touching_.size());
     lacking_.clear();
-    std::set_difference(touching.begin(), touching.end(), near.begin(), near.end(),
+    std::set_difference(touching_.begin(), touching_.end(), near.begin(), near.end(),
                         std::back_inserter(lacking_));
     missed_ += static_cast<std::int64_t>(lacking_.size());
   }
 
  private:
   ContactSearch<Dim> search_;
-  std::vector<Pair> lacking_;  ///< contacts that are not in the near list
+  std::vector<Pair> touching_;  ///< contacts found from nothing
+  std::vector<Pair> lacking_;   ///< contacts that are not in the near list
   std::int64_t checks_ = 0;
   std::int64_t contacts_ = 0;
   std::int64_t missed_ = 0;

@@ -12,6 +12,7 @@
 #include <lagrain/stopwatch.hpp>
 #include <lagrain/vec.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -24,10 +25,11 @@ namespace lagrain {
 template <int Dim, class Law>
 class ContactForces {
  public:
-  static constexpr Needs needs = Law::needs;                       ///< what the law needs
-  using Load = LoadRecord<Dim, needs>;                             ///< force and torque on a grain
-  using Scene = ContactScene<Dim, Law>;                            ///< what all contacts share
-  using List = NearList<Dim, typename Law::template Memory<Dim>>;  ///< where near pairs are listed
+  static constexpr Needs needs = Law::needs;          ///< what the law needs
+  using Memory = typename Law::template Memory<Dim>;  ///< what a contact remembers
+  using Load = LoadRecord<Dim, needs>;                ///< force and torque on a grain
+  using Scene = ContactScene<Dim, Law>;               ///< what all contacts share
+  using List = NearList<Dim, Memory>;                 ///< where near pairs are listed
 
   /// What all blocks have added up, once each has been evaluated.
   struct Totals {
@@ -42,7 +44,7 @@ class ContactForces {
   void measure_time(bool on) { measuring_ = on; }  ///< whether times are taken from now on
 
   /// Makes room for an evaluation.
-  void begin(const List& near, std::size_t walls, int threads) {
+  void begin(const List& near, const std::vector<Wall<Dim>>& walls, int threads) {
     const std::size_t blocks = near.blocks().size();
     sums_.resize(blocks);
     for (BlockSums& sums : sums_) {
@@ -51,8 +53,10 @@ class ContactForces {
     }
     kept_.resize(near.across_count());
     loads_.resize(static_cast<std::size_t>(threads));
-    wall_count_ = walls;
-    wall_forces_.assign(blocks * walls, Vec<Dim>::Zero());
+    wall_forces_.assign(blocks * walls.size(), Vec<Dim>::Zero());
+    wall_count_ = walls.size();
+    walls_meet_ = std::any_of(walls.begin(), walls.end(),
+                              [](const Wall<Dim>& wall) { return !wall.joined.empty(); });
   }
 
   /// Keeps the forces of the pairs that block b has with later ones.
@@ -95,6 +99,7 @@ class ContactForces {
       }
     }
     const double pair_seconds = watch.seconds();
+    if (walls_meet_) hand_over_memories(scene, block.walls);
     sums.walls = kernel_.walls(scene, block.walls, wall_forces_.data() + b * wall_count_);
     if (sums.within.excess > 0) note_deepest(sums.deepest, block.within, scene);
     if (sums.walls.excess > 0) note_deepest(sums.deepest, block.walls, scene);
@@ -145,11 +150,50 @@ class ContactForces {
     if constexpr (needs.spin) load.torque().setZero();
   }
 
+  /// Where walls meet, a contact may pass from one to another: what it remembers goes along, to the
+  /// nearest contact of the grain that is new.
+  static void hand_over_memories(const Scene& scene, PairTable<WallPair, Memory>& table) {
+    if constexpr (Memory::kReals > 0) {
+      const auto& pairs = table.pairs();
+      const auto touches = [&](std::size_t k) {
+        const auto& grain = scene.grains[pairs[k].i];
+        return contact_foot<Dim>(scene.walls, pairs[k].wall, grain.position()).distance <
+               grain.radius();
+      };
+      const auto is_new = [&](std::size_t k) { return table.memory(k) == Memory{}; };
+      for (std::size_t first = 0, end = 0; first < pairs.size(); first = end) {
+        while (end < pairs.size() && pairs[end].i == pairs[first].i) ++end;
+        if (end - first < 2) continue;
+        for (std::size_t old = first; old < end; ++old) {
+          if (is_new(old) || touches(old)) continue;
+          // A way in a step is short against the grain, so the new foot is near the old one.
+          const auto& grain = scene.grains[pairs[old].i];
+          const auto arm = [&](std::size_t k) -> Vec<Dim> {
+            const auto foot = scene.walls[pairs[k].wall].foot(grain.position());
+            return -foot.distance * foot.normal;
+          };
+          std::size_t heir = end;
+          double least = 0.5 * grain.radius();
+          for (std::size_t next = first; next < end; ++next) {
+            if (next == old || !is_new(next) || !touches(next)) continue;
+            const double way = (arm(next) - arm(old)).norm();
+            if (way < least) {
+              least = way;
+              heir = next;
+            }
+          }
+          if (heir < end) table.set_memory(heir, table.memory(old));
+        }
+      }
+    }
+  }
+
   ContactKernel<Dim, Law> kernel_;
   std::vector<BlockSums> sums_;
   std::vector<PairLoad<Dim, needs>> kept_;  // of the pairs across blocks
   std::vector<std::vector<Load>> loads_;    // of the block that each thread is at
   std::size_t wall_count_ = 0;
+  bool walls_meet_ = false;            // any of them
   std::vector<Vec<Dim>> wall_forces_;  // by block, and in it by wall
   bool measuring_ = false;
 };

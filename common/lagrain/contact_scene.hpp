@@ -79,6 +79,16 @@ struct ContactScene {
   double largest_overlap = 0;  ///< of the smaller radius [-]
   int first_slot = 0;          ///< whose load is the first of `loads`
 
+  /// The material of the grain in a slot.
+  std::size_t material(int slot) const {
+    return materials->empty() ? 0 : (*materials)[static_cast<std::size_t>(slot)];
+  }
+  /// The law between the grains in two slots.
+  const Law& law(int i, int j) const { return laws->between(material(i), material(j)); }
+  /// The law between the grain in a slot and a wall.
+  const Law& law_with_wall(int i, const Wall<Dim>& wall) const {
+    return laws->between(material(i), static_cast<std::size_t>(wall.material));
+  }
   /// The load of a slot.
   LoadRecord<Dim, Law::needs>& load(int slot) const { return loads[slot - first_slot]; }
 };

@@ -141,10 +141,6 @@ struct Sweep {
     }
   }
 
-  std::size_t material(int slot) const {
-    return scene.materials->empty() ? 0 : (*scene.materials)[static_cast<std::size_t>(slot)];
-  }
-
   /// The law's answer where `touching`, zero elsewhere; `partner_material(k)` is that of lane k.
   template <class Mask, class PartnerMaterial>
   Response<Dim, Real> respond(const Touch<Dim, Real>& touch, const Mask& touching,
@@ -157,7 +153,7 @@ struct Sweep {
       // One law after the other, each for its own lanes.
       std::array<const Law*, kWidth> law;
       for (std::size_t k = 0; k < kWidth; ++k) {
-        law[k] = &scene.laws->between(material(slot[k]), partner_material(k));
+        law[k] = &scene.laws->between(scene.material(slot[k]), partner_material(k));
       }
       const Memory past = memory;
       for (std::size_t first = 0; first < kWidth; ++first) {
@@ -322,7 +318,7 @@ struct Sweep {
     for (int d = 0; d < Dim; ++d) touch.slip[d] = only_if(touching, touch.slip[d]);
     Memory memory = read_memory(table, at);
     const Response<Dim, Real> response = respond(
-        touch, touching, pair.i, [&](std::size_t k) { return material(pair.j[k]); }, memory);
+        touch, touching, pair.i, [&](std::size_t k) { return scene.material(pair.j[k]); }, memory);
     write_memory(table, at, memory);
     const Real limit = scene.largest_overlap * smaller(pair.body_i.radius, pair.body_j.radius);
     note(response, touching, Real(touch.overlap - limit), partial);
@@ -339,7 +335,7 @@ struct Sweep {
       const auto [slot, w] = table.pairs()[first + k];
       const int at = static_cast<int>(k);
       const Wall<Dim>& wall = scene.walls[w];
-      const auto foot = wall.foot(scene.grains[slot].position());
+      const auto foot = contact_foot<Dim>(scene.walls, w, scene.grains[slot].position());
       i[k] = slot;
       set_lane(distance, at, foot.distance);
       set_lane(mass, at, scene.load(slot).at[Load::kMass]);

@@ -9,9 +9,12 @@
 #include <lagrain/neighbourhood.hpp>
 #include <lagrain/pair_table.hpp>
 #include <lagrain/records.hpp>
+#include <lagrain/touch.hpp>
 #include <lagrain/walls.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <sstream>
 #include <string>
 #include <type_traits>
@@ -25,18 +28,23 @@ struct DeepOverlap {
   int slot = -1;           ///< of the grain; -1: no overlap is noted
   int partner = -1;        ///< slot of the other grain, or the wall's place among the walls
   bool with_wall = false;  ///< whether the partner is a wall
+  double closing = 0;      ///< how fast they approach [m/s]
+  double stiffer = 0;      ///< what missing_stiffness says [-]
 };
 
-/// Overlap of two grains, of the smaller radius [-]; negative if they are apart.
-template <int Dim, Needs needs>
-double overlap_ratio(const GrainRecord<Dim, needs>& a, const GrainRecord<Dim, needs>& b) {
-  return (a.radius() + b.radius() - (a.position() - b.position()).norm()) /
-         std::min(a.radius(), b.radius());
-}
-/// Overlap of a grain with a wall, of its radius [-]; negative if they are apart.
-template <int Dim, Needs needs>
-double overlap_ratio(const GrainRecord<Dim, needs>& grain, const Wall<Dim>& wall) {
-  return 1 - wall.foot(grain.position()).distance / grain.radius();
+/// How many times as stiff a contact has to be if its overlap is to stay below a limit [-]: then
+/// the springs hold at the limit what they hold now, and what they have not stopped yet. (A spring's
+/// energy is proportional to its stiffness.)
+/// @param touch  the contact as it is
+/// @param limit  overlap [m]
+template <int Dim, class Law>
+double missing_stiffness(const Law& law, Touch<Dim> touch, double limit) {
+  const typename Law::template Memory<Dim> unstretched{};
+  const double closing = std::max(0.0, touch.closing);
+  const double to_hold =
+      law.elastic_energy(touch, unstretched) + 0.5 * touch.effective_mass * closing * closing;
+  touch.overlap = limit;
+  return to_hold / law.elastic_energy(touch, unstretched);
 }
 
 /// Notes the deepest overlap among listed pairs of grains, or of grains and walls, if it is deeper
@@ -44,14 +52,31 @@ double overlap_ratio(const GrainRecord<Dim, needs>& grain, const Wall<Dim>& wall
 template <int Dim, class Law, class P, class Memory>
 void note_deepest(DeepOverlap& deepest, const PairTable<P, Memory>& table,
                   const ContactScene<Dim, Law>& scene) {
-  const auto note = [&](double ratio, int slot, int partner, bool with_wall) {
-    if (ratio > deepest.ratio) deepest = {ratio, slot, partner, with_wall};
+  const auto body = [&](int slot) {
+    return read_bodies<double>(scene.grains, std::array<int, 1>{slot});
+  };
+  const auto note = [&](int slot, int partner, bool with_wall, const Law& law,
+                        const MaybeTouch<Dim, double>& maybe, double smaller) {
+    const Touch<Dim>& touch = maybe.touch;
+    if (!maybe.touching || !(touch.overlap / smaller > deepest.ratio)) return;
+    deepest = {touch.overlap / smaller,
+               slot,
+               partner,
+               with_wall,
+               touch.closing,
+               missing_stiffness(law, touch, scene.largest_overlap * smaller)};
   };
   for (const P& pair : table.pairs()) {
+    const auto i = body(pair.i);
     if constexpr (std::is_same_v<P, WallPair>) {
-      note(overlap_ratio(scene.grains[pair.i], scene.walls[pair.wall]), pair.i, pair.wall, true);
+      const Wall<Dim>& wall = scene.walls[pair.wall];
+      const auto [distance, normal] = contact_foot<Dim>(scene.walls, pair.wall, i.position);
+      note(pair.i, pair.wall, true, scene.law_with_wall(pair.i, wall),
+           touch_of_wall(i, 1 / i.inverse_mass, distance, normal, wall.velocity), i.radius);
     } else {
-      note(overlap_ratio(scene.grains[pair.i], scene.grains[pair.j]), pair.i, pair.j, false);
+      const auto j = body(pair.j);
+      note(pair.i, pair.j, false, scene.law(pair.i, pair.j), touch_of(i, j),
+           std::min(i.radius, j.radius));
     }
   }
 }
@@ -75,8 +100,13 @@ template <int Dim, class NumberOf>
   }
   std::ostringstream message;
   message << "t = " << t << " s: grain " << grain << " overlaps " << other << " by "
-          << deepest.ratio << " of the smaller radius (limit " << limit
-          << "); a stiffer contact, a smaller time step or a gentler start would help";
+          << deepest.ratio << " of the smaller radius (largest_overlap is " << limit << ")";
+  if (deepest.closing > 0) message << " and goes on at " << deepest.closing << " m/s";
+  message << "; ";
+  if (deepest.stiffer > 1 && std::isfinite(deepest.stiffer)) {
+    message << "a contact " << deepest.stiffer << " times as stiff would hold it, or ";
+  }
+  message << "a gentler start";
   throw SimulationError(message.str());
 }
 

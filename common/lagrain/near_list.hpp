@@ -8,6 +8,7 @@
 #include <lagrain/contact_search.hpp>
 #include <lagrain/neighbourhood.hpp>
 #include <lagrain/pair_table.hpp>
+#include <lagrain/pinned_grains.hpp>
 #include <lagrain/walls.hpp>
 
 #include <algorithm>
@@ -100,6 +101,10 @@ class NearList {
     listed_ = false;
   }
 
+  /// Says which grains, by slot, nothing moves. Two of them are not listed as a pair, nor one of
+  /// them with a wall that no force moves.
+  void pin(PinnedGrains pinned) { pinned_ = std::move(pinned); }
+
   /// How far the frame has moved since the last refresh, at time t [s].
   Vec<Dim> shift(double t) const { return (t - time_) * drift_; }
 
@@ -133,6 +138,7 @@ class NearList {
     margin_.resize(size_);
     for (int i = 0; i < size_; ++i) margin_[i] = wanted_margin(radius[i], velocity(i), dt);
     neighbourhood.near_pairs(x, radius, margin_, found_);
+    pinned_.drop_from(found_);
     list_pairs();
     list_walls(x, radius, all_walls, dt);
     stay_.resize(index(size_));
@@ -171,6 +177,7 @@ class NearList {
         !neighbourhood.pairs_of(strays, place_here, radius, margin_, found_)) {
       return false;
     }
+    pinned_.drop_from(found_);
     std::erase_if(found_, [&](const Pair& pair) { return surely_listed(pair, radius); });
     for (const int i : strays) stay(i, place_here(i));
     bool ends_change = false;
@@ -187,6 +194,7 @@ class NearList {
     if (ends_change) list_ends();
     for (const int i : strays) {
       for (std::size_t w = 0; w < all_walls.size(); ++w) {
+        if (!may_touch(i, all_walls[w])) continue;
         // In the frame at the last refresh, where the wall was at its centre.
         const Vec<Dim> x = stay_[index(i)].centre + all_walls[w].point - wall_centre_[w];
         if (all_walls[w].foot(x).distance > radius[i] + margin_[i] + wall_margin_[w]) continue;
@@ -362,6 +370,9 @@ class NearList {
     table.assign(std::move(keys), memories);
   }
 
+  /// Whether a grain and a wall are no pair of things that nothing moves.
+  bool may_touch(int slot, const Wall<Dim>& wall) const { return wall.yields() || !pinned_[slot]; }
+
   Block& block_of(int slot) { return blocks_[index(slot / block_size_)]; }
 
   /// Puts found_ into the blocks' tables.
@@ -451,6 +462,7 @@ class NearList {
     std::sort(listed.begin(), listed.end());
     ContactSearch<Dim> search;
     for (const Pair& pair : search.find(centre, radius + margin_)) {
+      if (pinned_.both(pair)) continue;
       if (std::binary_search(listed.begin(), listed.end(), pair)) continue;
       defects.push_back("slots " + std::to_string(pair.i) + " and " + std::to_string(pair.j) +
                         " are within reach and not listed");
@@ -466,6 +478,7 @@ class NearList {
           const Vec<Dim> x = stay_[index(i)].centre + all_walls[w].point - wall_centre_[w];
           const double margin = (margin_[i] + wall_margin_[w]) * kHair;
           if (!(all_walls[w].foot(x).distance <= radius[i] + margin)) continue;
+          if (!may_touch(i, all_walls[w])) continue;
           const auto& pairs = block.walls.pairs();
           if (std::binary_search(pairs.begin(), pairs.end(), WallPair{i, static_cast<int>(w)})) {
             continue;
@@ -494,7 +507,7 @@ class NearList {
       wall.for_each_within(
           x, [&](int i) { return radius[i] + margin_[i] + reach; },
           [&](int i) {
-            found_walls_.push_back({i, static_cast<int>(w)});
+            if (may_touch(i, wall)) found_walls_.push_back({i, static_cast<int>(w)});
           });
     }
     std::sort(found_walls_.begin(), found_walls_.end());
@@ -521,6 +534,7 @@ class NearList {
   std::vector<Block> blocks_;
   std::size_t across_ = 0;  // pairs across blocks
   bool listed_ = false;
+  PinnedGrains pinned_;                // by slot
   double time_ = 0;                    // of the last refresh [s]
   Vec<Dim> drift_ = Vec<Dim>::Zero();  // velocity of the frame [m/s]
   Eigen::VectorXd margin_;             // of each grain, around its centre [m]

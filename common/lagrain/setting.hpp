@@ -12,10 +12,12 @@ namespace lagrain {
 /// What is the same for all grains.
 template <int Dim>
 struct Setting {
-  Vec<Dim> gravity = Vec<Dim>::Zero();       ///< [m/s^2]
-  double time_step = 0;                      ///< [s]
-  double largest_overlap = kLargestOverlap;  ///< of the smaller radius; beyond it the run stops [-]
-  int threads = 1;                           ///< that share a step; results do not depend on it
+  Vec<Dim> gravity = Vec<Dim>::Zero();  ///< [m/s^2]
+  double time_step = 0;                 ///< [s]
+  /// Of the smaller radius; beyond it, and where something passes through something within a step,
+  /// the run stops. Infinite: it never does [-].
+  double largest_overlap = kLargestOverlap;
+  int threads = 1;  ///< that share a step; results do not depend on it
   InstructionSet instructions = instruction_sets().back();  ///< nor on this
 };
 

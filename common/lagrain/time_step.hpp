@@ -41,19 +41,27 @@ inline double largest_damped_phase(double damping_ratio) {
   return kFree / (std::sqrt(damped * damped + kFree) + damped);
 }
 
-/// Shortest collision and safe step over all pairs of materials that occur, with the lightest grain
-/// of each (the time grows with the mass; in Hertz's law it falls slowly with the radius, so grains
-/// of one material are taken to share a density), and the walls. A piston yields, like a grain of
-/// its mass. Where one law holds for all, all count as one material.
+/// Shortest collision and safe step over all pairs of materials that occur, and the walls. Of each
+/// material the lightest grain that moves is taken (the time grows with the mass; in Hertz's law it
+/// falls slowly with the radius, so grains of one material are taken to share a density), and, as
+/// its partner, the largest pinned one as well. A piston yields, like a grain of its mass. Two
+/// things that cannot move never touch. Where one law holds for all, all count as one material.
 template <int Dim, class Law, Needs needs>
 TimeScales time_scales(const Grains<Dim, needs>& g, const LawTable<Law>& laws,
                        const std::vector<Wall<Dim>>& walls) {
-  std::map<std::size_t, int> lightest;
+  struct Extremes {
+    int lightest = -1;        // that moves
+    int largest_pinned = -1;  // -1: there is none
+  };
+  std::map<std::size_t, Extremes> extremes;
   for (int i = 0; i < g.size(); ++i) {
     const bool alike = laws.one_law() || g.material.empty();
-    const std::size_t material = alike ? 0 : g.material[static_cast<std::size_t>(i)];
-    const auto [at, inserted] = lightest.try_emplace(material, i);
-    if (!inserted && g.mass[i] < g.mass[at->second]) at->second = i;
+    auto& [lightest, pinned] = extremes[alike ? 0 : g.material[static_cast<std::size_t>(i)]];
+    if (g.inverse_mass[i] > 0) {
+      if (lightest < 0 || g.mass[i] < g.mass[lightest]) lightest = i;
+    } else {
+      if (pinned < 0 || g.radius[i] > g.radius[pinned]) pinned = i;
+    }
   }
   TimeScales scales;
   const auto consider = [&](const Law& law, double m, double r) {
@@ -64,16 +72,29 @@ TimeScales time_scales(const Grains<Dim, needs>& g, const LawTable<Law>& laws,
         std::min(scales.safe_step,
                  largest_damped_phase(law.largest_damping_ratio()) * law.natural_time(m, r));
   };
-  for (const auto& [a, i] : lightest) {
-    for (const auto& [b, j] : lightest) {
+  const auto in_parallel = [](double a, double b) { return 1 / (1 / a + 1 / b); };
+  const auto consider_pair = [&](const Law& law, int i, int j) {
+    if (i < 0 || j < 0) return;
+    const double m = g.inverse_mass[j] > 0 ? in_parallel(g.mass[i], g.mass[j]) : g.mass[i];
+    consider(law, m, in_parallel(g.radius[i], g.radius[j]));
+  };
+  for (const auto& [a, of_a] : extremes) {
+    for (const auto& [b, of_b] : extremes) {
       if (b < a) continue;
-      consider(laws.between(a, b), 1 / (1 / g.mass[i] + 1 / g.mass[j]),
-               1 / (1 / g.radius[i] + 1 / g.radius[j]));
+      const Law& law = laws.between(a, b);
+      consider_pair(law, of_a.lightest, of_b.lightest);
+      consider_pair(law, of_a.lightest, of_b.largest_pinned);
+      consider_pair(law, of_b.lightest, of_a.largest_pinned);
     }
     for (const Wall<Dim>& wall : walls) {
+      const Law& law = laws.between(a, static_cast<std::size_t>(wall.material));
       const auto* piston = std::get_if<Piston<Dim>>(&wall.motion);
-      const double m = piston ? 1 / (1 / g.mass[i] + 1 / piston->mass) : g.mass[i];
-      consider(laws.between(a, static_cast<std::size_t>(wall.material)), m, g.radius[i]);
+      if (const int i = of_a.lightest; i >= 0) {
+        consider(law, piston ? in_parallel(g.mass[i], piston->mass) : g.mass[i], g.radius[i]);
+      }
+      if (const int i = of_a.largest_pinned; i >= 0 && piston) {
+        consider(law, piston->mass, g.radius[i]);
+      }
     }
   }
   return scales;

@@ -150,7 +150,7 @@ class Placer {
       return shortest(std::round(1000 * overlap) / 10) + " % of the smaller radius (limit ";
     };
     for (const Wall<Dim>& wall : scene_.walls) {
-      if (p.pinned) break;
+      if (p.pinned && !wall.yields()) continue;  // neither can move
       const double distance = wall.foot(p.position).distance;
       if (distance < 0) throw scene_.error(key, "lies behind wall \"" + wall.name + "\"");
       const double overlap = (p.radius - distance) / p.radius;

@@ -74,10 +74,8 @@ double push_apart(std::vector<Grain<Dim>>& grains, std::vector<Wall<Dim>> walls,
     sim.for_each_contact([&](Pair pair, const Touch<Dim>& touch, const auto&, const auto&) {
       note(touch.overlap, r[pair.i] + r[pair.j], std::min(r[pair.i], r[pair.j]));
     });
-    sim.for_each_wall_contact(
-        [&](WallPair pair, const Touch<Dim>& touch, const auto&, const auto&) {
-          if (sim.grains().inverse_mass[pair.i] > 0) note(touch.overlap, r[pair.i], r[pair.i]);
-        });
+    sim.for_each_wall_contact([&](WallPair pair, const Touch<Dim>& touch, const auto&,
+                                  const auto&) { note(touch.overlap, r[pair.i], r[pair.i]); });
     return largest;
   };
   double left = largest_overlap();

@@ -17,7 +17,10 @@ namespace lagrain {
 
 template <int Dim>
 Run<Dim>::Run(Scene<Dim> scene, Placement<Dim> placement)
-    : scene_(std::move(scene)), groups_(std::move(placement.group)) {
+    : scene_(std::move(scene)),
+      groups_(std::move(placement.group)),
+      pinned_(static_cast<int>(placement.grains.size()),
+              [&](int i) { return placement.grains[static_cast<std::size_t>(i)].pinned ? 0 : 1; }) {
   for (const Grain<Dim>& grain : placement.grains) materials_.push_back(grain.material);
   // A duration of whole steps must not gain one by rounding.
   steps_planned_ = static_cast<std::int64_t>(
@@ -57,7 +60,7 @@ void Run<Dim>::check_contacts() {
   const bool due = count() <= kEveryStepLimit || listed_anew || steps() % scene_.audit_every == 0;
   // A fourth-order step ends with a drift after its last forces: a list that expired there is
   // renewed before anybody reads it.
-  if (due && near_is_valid()) audit_.check(positions(), radii(), near_pairs());
+  if (due && near_is_valid()) audit_.check(positions(), radii(), near_pairs(), pinned_);
 }
 
 template <int Dim>
@@ -134,7 +137,6 @@ std::string explain(const Run<Dim>& run) {
     out += padded(name, 16) + value + "\n";
   };
   const TimeScales scales = run.time_scales();
-  const double fraction = run.time_step() / scales.contact;
   line("title", scene.title);
   line("dimension", std::to_string(Dim));
   line("contact law", std::string(description_of(scene.normal).in_words) + ", " +
@@ -143,9 +145,15 @@ std::string explain(const Run<Dim>& run) {
   line("neighbourhood", std::string(name_of(scene.neighbourhood)));
   line("grains", std::to_string(run.count()));
   line("walls", std::to_string(run.walls().size()));
-  line("contact time", rounded(scales.contact) + " s (the shortest)");
-  line("time step", rounded(run.time_step()) + " s (1/" + rounded(1 / fraction) + " contact)");
-  line("safe step", rounded(scales.safe_step) + " s (the largest allowed)");
+  if (std::isfinite(scales.contact)) {
+    line("contact time", rounded(scales.contact) + " s (the shortest)");
+    line("time step", rounded(run.time_step()) + " s (1/" +
+                          rounded(scales.contact / run.time_step()) + " contact)");
+    line("safe step", rounded(scales.safe_step) + " s (the largest allowed)");
+  } else {
+    line("contact time", "none: nothing in the scene can move");
+    line("time step", rounded(run.time_step()) + " s");
+  }
   line("steps", std::to_string(run.steps_planned()) + " for " + rounded(scene.duration) + " s");
   const ModelSize size = run.size();
   const auto bytes = [&](std::size_t whole, std::size_t part, const char* what) {
@@ -174,9 +182,11 @@ std::vector<std::pair<std::string, std::string>> facts(const Run<Dim>& run) {
   fact("grains", std::to_string(run.count()));
   fact("steps", std::to_string(run.steps()));
   fact("time", rounded(run.time(), 6) + " s");
-  fact("time step", rounded(run.time_step()) + " s, 1/" +
-                        rounded(run.time_scales().contact / run.time_step()) +
-                        " of the shortest contact");
+  const double contact = run.time_scales().contact;
+  fact("time step", rounded(run.time_step()) + " s" +
+                        (std::isfinite(contact) ? ", 1/" + rounded(contact / run.time_step()) +
+                                                      " of the shortest contact"
+                                                : std::string()));
   fact("contacts", std::to_string(s.contacts) + " between grains, " +
                        std::to_string(s.wall_contacts) + " with walls");
   fact("coordination", rounded(s.coordination));

@@ -95,6 +95,7 @@ inline constexpr Key kAxis{"axis", kNumber};
 inline constexpr Key kFrom{"from", kLength};
 inline constexpr Key kTo{"to", kLength};
 inline constexpr Key kAlong{"along", kLength};
+inline constexpr Key kCorners{"corners", kLength};
 inline constexpr Key kOpen{"open"};
 
 inline constexpr Key kMotion{"motion"};

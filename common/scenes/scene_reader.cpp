@@ -356,13 +356,16 @@ class Reader {
     Wall<Dim> wall;
     if (s.has(keys::kRadius)) {
       wall = read_cylinder(s, name);
+    } else if (s.has(keys::kCorners)) {
+      wall = read_plate(s, name);
     } else if (s.has(keys::kPoint) || s.has(keys::kNormal)) {
       wall = read_half_space(s, name);
     } else if (s.has(keys::kFrom) || s.has(keys::kTo)) {
       wall = read_segment(s, name);
     } else {
       s.finish();
-      s.missing(keys::kPoint, "point and normal, from and to, or point and radius");
+      s.missing(keys::kPoint, std::string("point and normal, ") +
+                                  (Dim == 2 ? "from and to" : "corners") + ", or point and radius");
     }
     add_wall(s, std::move(wall), material);
   }
@@ -371,8 +374,9 @@ class Reader {
     const Vec<Dim> point = s.vector<Dim>(keys::kPoint);
     const Vec<Dim> normal = s.vector<Dim>(keys::kNormal);
     if (normal.isZero(0)) s.expected(keys::kNormal, "a direction");
-    s.refuse(keys::kFrom, "either point and normal, or from and to");
-    s.refuse(keys::kTo, "either point and normal, or from and to");
+    for (const Key& key : {keys::kFrom, keys::kTo, keys::kAlong}) {
+      s.refuse(key, "either point and normal, or from and to");
+    }
     s.refuse(keys::kAxis, "an axis belongs to a round wall, with point and radius");
     Wall<Dim> wall = Wall<Dim>::half_space(name, point, normal);
     if (is_unit(normal)) wall.shape = HalfSpace<Dim>{normal};
@@ -380,25 +384,50 @@ class Reader {
   }
 
   Wall<Dim> read_segment(TomlTable& s, const std::string& name) {
-    const Vec<Dim> from = s.vector<Dim>(keys::kFrom);
-    const bool given_along = s.has(keys::kAlong);
-    Wall<Dim> wall = Wall<Dim>::segment(name, from, from);
-    if (given_along) {
-      s.refuse(keys::kTo, "either to or along");
-      wall.shape = WallSegment<Dim>{s.vector<Dim>(keys::kAlong)};
+    if constexpr (Dim == 3) {
+      s.fail(s.has(keys::kFrom) ? keys::kFrom : keys::kTo,
+             "in space a line has no thickness to touch; give the corners of a plate: corners = "
+             "[[x, y, z], [x, y, z], [x, y, z], ...]");
     } else {
-      wall = Wall<Dim>::segment(name, from, s.vector<Dim>(keys::kTo));
+      const Vec<2> from = s.vector<2>(keys::kFrom);
+      const bool given_along = s.has(keys::kAlong);
+      Wall<2> wall = Wall<2>::segment(name, from, from);
+      if (given_along) {
+        s.refuse(keys::kTo, "either to or along");
+        wall.shape = WallSegment{s.vector<2>(keys::kAlong)};
+      } else {
+        wall = Wall<2>::segment(name, from, s.vector<2>(keys::kTo));
+      }
+      if (std::get<WallSegment>(wall.shape).along.isZero(0)) {
+        s.fail(given_along ? keys::kAlong : keys::kTo, "expected another point than from");
+      }
+      return wall;
     }
-    if (std::get<WallSegment<Dim>>(wall.shape).along.isZero(0)) {
-      s.fail(given_along ? keys::kAlong : keys::kTo, "expected another point than from");
+  }
+
+  Wall<Dim> read_plate(TomlTable& s, const std::string& name) {
+    if constexpr (Dim == 2) {
+      s.fail(keys::kCorners, "a plate is for dimension = 3; in the plane give from and to");
+    } else {
+      for (const Key& key : {keys::kNormal, keys::kFrom, keys::kTo, keys::kAlong, keys::kAxis}) {
+        s.refuse(key, "a plate has corners alone; remove this line");
+      }
+      const auto corners = s.vectors<3>(keys::kCorners);
+      const std::string defect = Plate::defect(corners);
+      if (!defect.empty()) s.fail(keys::kCorners, defect);
+      Wall<3> wall = Wall<3>::plate(name, corners);
+      if (s.has(keys::kPoint)) {
+        wall.point = wall.home = s.vector<3>(keys::kPoint);
+        wall.shape = Plate(corners);
+      }
+      return wall;
     }
-    return wall;
   }
 
   Wall<Dim> read_cylinder(TomlTable& s, const std::string& name) {
     const double radius = s.number(keys::kRadius);
     const Vec<Dim> point = s.vector<Dim>(keys::kPoint);
-    for (const Key& key : {keys::kNormal, keys::kFrom, keys::kTo, keys::kAlong}) {
+    for (const Key& key : {keys::kNormal, keys::kFrom, keys::kTo, keys::kAlong, keys::kCorners}) {
       s.refuse(key, "a round wall has point" + std::string(Dim == 3 ? ", axis" : "") +
                         " and radius; remove this line");
     }

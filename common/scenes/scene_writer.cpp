@@ -220,10 +220,19 @@ class Writer {
                             if (Dim == 3) out_.add(keys::kAxis, round.axis);
                             out_.add(keys::kRadius, round.radius);
                           },
-                          [&](const WallSegment<Dim>& segment) {
+                          [&](const WallSegment& segment) {
                             out_.add(keys::kFrom, wall.home);
                             // `to` could not promise the same bits: to - from is rounded.
                             out_.add(keys::kAlong, segment.along);
+                          },
+                          [&](const Plate& plate) {
+                            // Nor could corners without a point.
+                            out_.add(keys::kPoint, wall.home);
+                            std::string corners;
+                            for (const Vec<3>& corner : plate.corners()) {
+                              corners += (corners.empty() ? "" : ", ") + in_toml(corner);
+                            }
+                            out_.as_it_is(keys::kCorners, "[" + corners + "]", "m");
                           }},
                wall.shape);
     write_motion(wall);

@@ -11,6 +11,7 @@
 #include <lagrain/simulation.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace lagrain::detail {
@@ -107,6 +108,11 @@ std::unique_ptr<Run<Dim>> make_run_of(const Scene<Dim>& scene, Placement<Dim> pl
   auto grains = make_grains<Dim, Law::needs>(placement.grains);
 
   const TimeScales scales = time_scales(grains, laws, scene.walls);
+  if (scene.time_step.seconds <= 0 && !std::isfinite(scales.contact)) {
+    throw scene.error("time_step",
+                      "nothing in the scene can move, so no contact sets a step; give one in "
+                      "seconds, or a grain that is not pinned");
+  }
   Scene<Dim> resolved = scene;
   if (!(scene.time_step.seconds > 0)) {
     resolved.time_step.seconds = scene.time_step.fraction_of_contact * scales.contact;

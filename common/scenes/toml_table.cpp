@@ -201,21 +201,26 @@ double TomlTable::number(const Key& key, double fallback) {
   return node != nullptr ? quantity(*node, key) : fallback;
 }
 
+const toml::array& TomlTable::list_of(const Key& key, const std::string& what) {
+  const auto* array = require(key, "a list").as_array();
+  if (array == nullptr || array->empty()) expected(key, what);
+  return *array;
+}
+
 std::vector<double> TomlTable::numbers(const Key& key) {
-  const toml::node& node = require(key, "a list");
-  const auto* array = node.as_array();
-  if (array == nullptr || array->empty()) expected(key, "a list of numbers");
   std::vector<double> values;
-  for (const toml::node& item : *array) values.push_back(quantity(item, key));
+  for (const toml::node& item : list_of(key, "a list of numbers")) {
+    values.push_back(quantity(item, key));
+  }
   return values;
 }
 
-void TomlTable::read_vector(const Key& key, std::span<double> components) {
-  const toml::node& node = *find(key);
+void TomlTable::read_vector(const toml::node& node, const Key& key, std::span<double> components) {
   const auto* array = node.as_array();
   if (array == nullptr || array->size() != components.size()) {
-    expected(key, "[" + std::string(components.size() == 2 ? "x, y" : "x, y, z") + "], each " +
-                      std::string(key.measure.what) + unit_of(key.measure));
+    file_.expected(node, path(key),
+                   "[" + std::string(components.size() == 2 ? "x, y" : "x, y, z") + "], each " +
+                       std::string(key.measure.what) + unit_of(key.measure));
   }
   for (std::size_t d = 0; d < components.size(); ++d) {
     components[d] = quantity(*array->get(d), key);

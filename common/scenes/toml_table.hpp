@@ -79,10 +79,19 @@ class TomlTable {
   std::vector<double> numbers(const Key& key);
   template <int N>
   Eigen::Matrix<double, N, 1> vector(const Key& key) {
-    require(key, N == 2 ? "[x, y]" : "[x, y, z]");
+    const toml::node& node = require(key, N == 2 ? "[x, y]" : "[x, y, z]");
     Eigen::Matrix<double, N, 1> v;
-    read_vector(key, {v.data(), static_cast<std::size_t>(N)});
+    read_vector(node, key, {v.data(), static_cast<std::size_t>(N)});
     return v;
+  }
+  /// As many vectors as there are.
+  template <int N>
+  std::vector<Eigen::Matrix<double, N, 1>> vectors(const Key& key) {
+    std::vector<Eigen::Matrix<double, N, 1>> list;
+    for (const toml::node& item : list_of(key, "a list of points")) {
+      read_vector(item, key, {list.emplace_back().data(), static_cast<std::size_t>(N)});
+    }
+    return list;
   }
   std::int64_t integer(const Key& key, std::int64_t least, std::int64_t fallback);
   bool flag(const Key& key, bool fallback);
@@ -127,7 +136,9 @@ class TomlTable {
   const toml::node* find(const Key& key);
   const toml::node& require(const Key& key, const std::string& what);
   double quantity(const toml::node& node, const Key& key) const;
-  void read_vector(const Key& key, std::span<double> components);
+  /// @throws SceneError if there is no list with something in it
+  const toml::array& list_of(const Key& key, const std::string& what);
+  void read_vector(const toml::node& node, const Key& key, std::span<double> components);
   std::size_t count_tables(const Key& key);
   TomlTable table_at(const Key& key, std::size_t index) const;
 

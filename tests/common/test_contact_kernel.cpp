@@ -70,7 +70,7 @@ struct Heap {
     }
     walls.push_back(
         Wall<Dim>::half_space("floor", Vec<Dim>::Constant(-0.9), Vec<Dim>::Unit(Dim - 1)));
-    walls.push_back(Wall<Dim>::segment("bar", -10 * Vec<Dim>::Unit(0), 10 * Vec<Dim>::Unit(0)));
+    walls.push_back(flat_piece<Dim>("bar", -10 * Vec<Dim>::Unit(0), 10 * Vec<Dim>::Unit(0)));
     walls.back().material = material_count - 1;
     walls.back().velocity = 0.1 * Vec<Dim>::Unit(0);
 

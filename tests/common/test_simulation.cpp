@@ -237,7 +237,7 @@ TEST_SUITE("simulation") {
     CHECK(failure_of(faster, 1000, 1000) == of_pair);
     CHECK(of_pair.find("grain 1 overlaps grain 2") != std::string::npos);
     CHECK(of_pair.find("t = 0.01") != std::string::npos);
-    CHECK(of_pair.find("limit 0.3") != std::string::npos);
+    CHECK(of_pair.find("largest_overlap is 0.3") != std::string::npos);
     CHECK(of_wall.find("grain 1 overlaps wall anvil") != std::string::npos);
     CHECK(of_wall.find("t = 0.01") != std::string::npos);
   }

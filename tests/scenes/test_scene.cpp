@@ -303,8 +303,8 @@ TEST_SUITE("scene") {
 
     CHECK(to_toml(twice) == resolved);
     CHECK(twice.walls.at(1).home == once.walls.at(1).home);
-    CHECK(std::get<WallSegment<2>>(twice.walls.at(1).shape).along ==
-          std::get<WallSegment<2>>(once.walls.at(1).shape).along);
+    CHECK(std::get<WallSegment>(twice.walls.at(1).shape).along ==
+          std::get<WallSegment>(once.walls.at(1).shape).along);
     CHECK(std::get<HalfSpace<2>>(twice.walls.at(2).shape).normal ==
           std::get<HalfSpace<2>>(once.walls.at(2).shape).normal);
     CHECK(std::get<Cylinder<2>>(twice.walls.at(3).shape).radius == 0.7);

@@ -161,6 +161,7 @@ high = [1, 1]
       with(plain, fill, "radius = 0.01\n[fill.velocity]\nrandom = 1\n[fill.region]\n"),
       with(plain, plane, "from = [0, 0]\nto = [0, 1]\n"),
       with(plain, plane, "from = [0, 0]\nalong = [0, 1]\n"),
+      with(in_space<3>(plain), in_space<3>(plane), "corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\n"),
       round,
       with(in_space<3>(round), "radius = 1\n", "radius = 1\naxis = [0, 0, 1]\n"),
       moving("type = \"steady\"\nvelocity = [0, 1]\n"),

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <utility>
 #include <variant>
@@ -375,7 +376,7 @@ Sim<Dim, Law, N> start(const MotionScene<Dim>& scene, const Law& law, N neighbou
   Setting<Dim> setting;
   setting.gravity = scene.gravity;
   setting.time_step = time_scales(grains, laws, scene.walls).safe_step;
-  setting.largest_overlap = 1e300;
+  setting.largest_overlap = std::numeric_limits<double>::infinity();
   setting.threads = threads;
   setting.instructions = instructions;
   return {std::move(grains), laws, scene.walls, setting, std::move(neighbourhood)};

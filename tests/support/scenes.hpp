@@ -12,8 +12,11 @@
 #include <lagrain/simulation.hpp>
 #include <lagrain/viscous_friction.hpp>
 
+#include <Eigen/Geometry>
+
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -128,6 +131,18 @@ Sim<Dim, Law, N, Motion> make_sim(const std::vector<Grain<Dim>>& list, const Law
   setting.gravity = gravity;
   setting.time_step = time_scales(grains, laws, walls).safe_step / refinement;
   return {std::move(grains), laws, walls, setting, std::move(neighbourhood)};
+}
+
+/// A wall with ends: a segment between two points of the plane, and in space a strip of that length
+/// and 2 m wide with the line between them in its middle.
+template <int Dim>
+Wall<Dim> flat_piece(const std::string& name, const Vec<Dim>& from, const Vec<Dim>& to) {
+  if constexpr (Dim == 2) {
+    return Wall<2>::segment(name, from, to);
+  } else {
+    const Vec<3> across = (to - from).unitOrthogonal();
+    return Wall<3>::plate(name, {from - across, to - across, to + across, from + across});
+  }
 }
 
 /// A closed axis-parallel box of half-spaces.

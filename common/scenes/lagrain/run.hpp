@@ -6,6 +6,7 @@
 #include <lagrain/any_neighbourhood.hpp>
 #include <lagrain/audit.hpp>
 #include <lagrain/observe.hpp>
+#include <lagrain/pinned_grains.hpp>
 #include <lagrain/placement.hpp>
 #include <lagrain/scene.hpp>
 #include <lagrain/time_step.hpp>
@@ -107,6 +108,7 @@ class Run {
   Scene<Dim> scene_;
   std::vector<int> materials_;
   std::vector<int> groups_;
+  PinnedGrains pinned_;
   std::int64_t steps_planned_ = 0;
   Ledger start_;
   ContactAudit<Dim> audit_;

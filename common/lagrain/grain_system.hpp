@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// @file
+/// Grains, walls and the contacts between them: what a simulation is made of and shows, whatever
+/// moves it on.
+
+#include <lagrain/check.hpp>
+#include <lagrain/contact_forces.hpp>
+#include <lagrain/contact_law.hpp>
+#include <lagrain/grain_store.hpp>
+#include <lagrain/grains.hpp>
+#include <lagrain/law_table.hpp>
+#include <lagrain/near_list.hpp>
+#include <lagrain/neighbourhood.hpp>
+#include <lagrain/passing.hpp>
+#include <lagrain/pinned_grains.hpp>
+#include <lagrain/records.hpp>
+#include <lagrain/setting.hpp>
+#include <lagrain/stopwatch.hpp>
+#include <lagrain/threads.hpp>
+#include <lagrain/walls.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lagrain {
+
+/// The part of a Simulation that does not depend on its integrator: grains in slots, walls, laws,
+/// the list of near pairs with what contacts remember, and the paper's step 5, which keeps that
+/// list and the triangulation up to date.
+template <int Dim, ContactLaw<Dim> Law, Neighbourhood<Dim> N>
+class GrainSystem {
+ public:
+  static constexpr Needs needs = Law::needs;          ///< what the law needs
+  using Memory = typename Law::template Memory<Dim>;  ///< what a contact remembers
+
+  std::int64_t steps() const { return steps_; }                                     ///< made so far
+  double time() const { return static_cast<double>(steps_) * setting_.time_step; }  ///< [s]
+  /// All grains as they are now, by number. Put together when asked for; stays until the next step.
+  const Grains<Dim, needs>& grains() const { return store_.by_number(); }
+  // What never changes is there without being put together.
+  const Eigen::VectorXd& radii() const { return store_.radii(); }    ///< N, by number [m]
+  const Eigen::VectorXd& masses() const { return store_.masses(); }  ///< N, by number [kg]
+  const std::vector<Wall<Dim>>& walls() const { return walls_; }     ///< as they are now
+  const LawTable<Law>& laws() const { return laws_; }                ///< as they were given
+  const Setting<Dim>& setting() const { return setting_; }           ///< as it holds now
+  const N& neighbourhood() const { return neighbourhood_; }          ///< what proposes the pairs
+  /// Energy put in and taken out since the start.
+  const EnergyFlow& flow() const { return flow_; }
+
+  /// The listed pairs, sorted: they hold every contact while near_list_holds().
+  std::vector<Pair> near_pairs() const {
+    std::vector<Pair> pairs;
+    pairs.reserve(near_count());
+    for_each_table([&](const auto& table) {
+      for (const auto [a, b] : table.pairs()) {
+        const int i = store_.number(a), j = store_.number(b);
+        pairs.push_back({std::min(i, j), std::max(i, j)});
+      }
+    });
+    sort_pairs(pairs, count());
+    return pairs;
+  }
+  std::size_t near_count() const { return near_.pair_count(); }  ///< how many pairs are listed
+  std::int64_t refreshes() const { return near_.refreshes(); }   ///< of the near list
+  /// Grains that the near list centred anew between refreshes.
+  std::int64_t amended() const { return near_.amended(); }
+  /// False when a step that ended with a move has made the list expire: the next forces renew it.
+  bool near_list_holds() const {
+    const Vec<Dim> shift = near_.shift(time());
+    const Grains<Dim, needs>& g = grains();
+    if (!near_.listed() || !near_.walls_hold(walls_, shift)) return false;
+    for (int slot = 0; slot < count(); ++slot) {
+      if (!near_.holds(slot, g.position.col(store_.number(slot)), shift)) return false;
+    }
+    return true;
+  }
+
+  /// Threads that share the steps from now on.
+  /// @throws ContractError if there are none
+  void use_threads(int threads) {
+    LAGRAIN_EXPECTS(threads >= 1, "threads " + std::to_string(threads));
+    setting_.threads = threads;
+  }
+  /// Where the time went while it was measured.
+  const PhaseTimes& times() const { return times_; }
+  /// Whether the time of each phase is measured from now on.
+  void measure_phases(bool on) {
+    measuring_ = on;
+    forces_.measure_time(on);
+  }
+  /// Wall-clock time spent so far on knowing the near pairs [s].
+  double neighbourhood_seconds() const { return times_.refresh; }
+
+  /// Visits every grain-grain contact: f(pair, touch, response, memory), as grain pair.i sees it;
+  /// pair.i may be the larger number.
+  template <class F>
+  void for_each_contact(F&& f) const {
+    const Grains<Dim, needs>& g = grains();
+    for_each_table([&](const auto& table) {
+      for (std::size_t k = 0; k < table.size(); ++k) {
+        const Pair pair{store_.number(table.pairs()[k].i), store_.number(table.pairs()[k].j)};
+        const auto [touching, touch] = touch_of(body(g, pair.i), body(g, pair.j));
+        if (!touching) continue;
+        Memory memory = table.memory(k);
+        f(pair, touch, laws_.of(g.material, pair.i, pair.j).respond(touch, memory, 0), memory);
+      }
+    });
+  }
+
+  /// Visits every wall contact: f(wall pair, touch, response, memory).
+  template <class F>
+  void for_each_wall_contact(F&& f) const {
+    const Grains<Dim, needs>& g = grains();
+    for (const auto& block : near_.blocks()) {
+      for (std::size_t k = 0; k < block.walls.size(); ++k) {
+        const WallPair pair{store_.number(block.walls.pairs()[k].i), block.walls.pairs()[k].wall};
+        const Wall<Dim>& wall = walls_[index(pair.wall)];
+        const auto [distance, normal] =
+            contact_foot<Dim>(walls_.data(), pair.wall, g.position.col(pair.i));
+        const auto [touching, touch] =
+            touch_of_wall(body(g, pair.i), g.mass[pair.i], distance, normal, wall.velocity);
+        if (!touching) continue;
+        Memory memory = block.walls.memory(k);
+        f(pair, touch, laws_.with_wall(g.material, pair.i, wall.material).respond(touch, memory, 0),
+          memory);
+      }
+    }
+  }
+
+ protected:
+  using Record = GrainRecord<Dim, needs>;
+  using Load = LoadRecord<Dim, needs>;
+
+  /// Step 1 of the paper is the first call of update_triangulation.
+  GrainSystem(Grains<Dim, needs> grains, LawTable<Law> laws, std::vector<Wall<Dim>> walls,
+              Setting<Dim> setting, N neighbourhood)
+      : store_(std::move(grains), !laws.one_law()),
+        laws_(std::move(laws)),
+        walls_(std::move(walls)),
+        setting_(std::move(setting)),
+        neighbourhood_(std::move(neighbourhood)),
+        forces_(setting_.instructions, store_.materials().empty()) {
+    use_threads(setting_.threads);
+    join_walls(walls_);
+    for (Wall<Dim>& wall : walls_) wall.advance(0, 0);
+    pin_grains();
+    near_.reset(count(), std::max(kLeastBlock, (count() + kMostBlocks - 1) / kMostBlocks));
+    strays_.resize(near_.blocks().size());
+    // A run that may overlap without a limit may pass through things as well.
+    if (std::isfinite(setting_.largest_overlap) && count() > 0) {
+      watch_ = PassageWatch<Dim>(near_.blocks().size(), store_.radius().minCoeff(), walls_);
+    }
+  }
+
+  int count() const { return store_.count(); }
+
+  /// f(block, thread) for every block, shared by the threads.
+  template <class F>
+  void for_each_block(F&& f) {
+    share_among_threads(near_.blocks().size(), setting_.threads, f);
+  }
+
+  void sort_grains() {
+    if (!store_.order_matters()) return;
+    store_.expect_finite(time());
+    const std::vector<int> slot_of = store_.sort_if_mixed();
+    if (slot_of.empty()) return;
+    near_.renumber(slot_of);
+    pin_grains();
+    if constexpr (requires { neighbourhood_.forget(); }) neighbourhood_.forget();
+  }
+
+  /// Grains and walls have come to where they are at time t [s].
+  void expect_no_passage(double t) {
+    watch_.expect_no_passage(
+        count(), [&](int slot) -> const Record& { return store_.record(slot); },
+        [&](int slot) { return store_.number(slot); }, walls_, t,
+        near_.shift(t) - near_.shift(watch_.since()), setting_.time_step);
+  }
+
+  // ---- The paper's step 5 ----------------------------------------------------------------------
+
+  /// Brings the near list, and with it T, up to date with the grains and walls at time t [s], if it
+  /// no longer holds. Single grains that have left their margins are amended, if that will do.
+  void update_triangulation(double t) {
+    const bool walls_hold = near_.listed() && near_.walls_hold(walls_, near_.shift(t));
+    const bool holds = walls_hold && std::all_of(strays_.begin(), strays_.end(),
+                                                 [](const auto& list) { return list.empty(); });
+    // Where lists are not amended, one that holds is too dear to give away.
+    const bool narrow = AmendableNeighbourhood<N, Dim> && near_.worth_narrowing(steps_);
+    if (holds && !narrow) return;
+    const Stopwatch watch;
+    const auto velocity = [&](int slot) { return store_.record(slot).velocity(); };
+    if (narrow || !walls_hold || !amend(t, velocity)) {
+      store_.expect_finite(time());
+      near_.refresh(store_.places(), store_.radius(), velocity, walls_, neighbourhood_, t,
+                    setting_.time_step, steps_);
+    }
+    times_.refresh += watch.seconds();
+  }
+
+  GrainStore<Dim, needs> store_;
+  LawTable<Law> laws_;
+  std::vector<Wall<Dim>> walls_;
+  Setting<Dim> setting_;
+  N neighbourhood_;
+  ContactForces<Dim, Law> forces_;
+  NearList<Dim, Memory> near_;
+  EnergyFlow flow_;
+  double force_step_ = 0;  // what memories and losses advance by in an evaluation [s]
+  std::int64_t steps_ = 0;
+  PhaseTimes times_;
+  bool measuring_ = false;
+
+  std::vector<std::vector<int>> strays_;  // grains of each block that have left their margins
+  std::vector<int> all_strays_;
+  PassageWatch<Dim> watch_;
+
+ private:
+  /// Blocks of slots are the unit of work of a thread. They are so large that few pairs lie across
+  /// them, and so few that what each adds up costs nothing. In blocks of half the size 2^(1/Dim)
+  /// times as many pairs lie across; with twice the size small scenes have too few blocks for many
+  /// threads. Results depend on the size in the last digits, because blocks fix the order of sums.
+  static constexpr int kLeastBlock = Dim == 2 ? 1024 : 2048;
+  static constexpr int kMostBlocks = 128;
+
+  template <class I>
+  static std::size_t index(I i) {
+    return static_cast<std::size_t>(i);
+  }
+
+  static Body<Dim, needs> body(const Grains<Dim, needs>& g, int i) {
+    Body<Dim, needs> b{g.position.col(i), g.velocity.col(i), g.radius[i], g.inverse_mass[i], {}};
+    if constexpr (needs.spin) b.omega = g.omega.col(i);
+    return b;
+  }
+
+  template <class F>
+  void for_each_table(F&& f) const {
+    for (const auto& block : near_.blocks()) {
+      f(block.within);
+      f(block.across);
+    }
+  }
+
+  void pin_grains() {
+    near_.pin(PinnedGrains(count(),
+                           [&](int slot) { return store_.record(slot).at[Record::kInverseMass]; }));
+  }
+
+  /// @returns false if a refresh is due
+  template <class Velocity>
+  bool amend(double t, Velocity&& velocity) {
+    if constexpr (AmendableNeighbourhood<N, Dim>) {
+      all_strays_.clear();
+      for (const auto& list : strays_) {
+        all_strays_.insert(all_strays_.end(), list.begin(), list.end());
+      }
+      return near_.amend(
+          all_strays_, [&](int slot) { return store_.record(slot).position(); }, velocity,
+          store_.radius(), walls_, neighbourhood_, t, setting_.time_step);
+    }
+    return false;
+  }
+};
+
+}  // namespace lagrain

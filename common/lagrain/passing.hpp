@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// @file
+/// What is fast enough may cross another grain, or a wall, within one time step, and be apart from
+/// it before and after: no search for contacts sees that. These functions find such passages.
+///
+/// Bound. Two grains whose places change by d against each other in a step, and that are apart
+/// before and after, overlap in between by at most R - sqrt(R^2 - d^2/4) < d^2 / (7 R) for d < R,
+/// where R is the sum of their radii, at least twice the smaller one. So nothing deeper than
+/// (2 kSlow)^2 / 14, about 1 % of the smaller radius, is missed while no grain moves by more than
+/// kSlow of the smallest radius in a step. Sound runs stay far below: a grain that moves so far in
+/// a tenth of a contact would overlap by more than half of its radius where it hits. Faster grains
+/// are looked at one by one.
+
+#include <lagrain/check.hpp>
+#include <lagrain/contact_search.hpp>
+#include <lagrain/vec.hpp>
+#include <lagrain/walls.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace lagrain {
+
+/// The way, of the smallest radius, that a grain may go in a step without being looked at [-]. At
+/// twice this value the bound is four times as large.
+inline constexpr double kSlow = 0.2;
+/// The overlap, of the smaller radius, that has to be missed for a run to stop [-]: the bound.
+inline constexpr double kMissed = 4 * kSlow * kSlow / 14;
+
+/// The overlap [m] that is seen neither at the start nor at the end of a straight way, if it is
+/// deep enough to matter; else 0.
+/// @param distance  distance(s) [m] of what moves from its partner, at the part s in [0, 1] of its
+///                  way; a convex or a concave function
+/// @param reach     distance at which they touch [m]
+/// @param radius    the smaller one [m]
+template <class Distance>
+double missed_overlap(Distance&& distance, double reach, double radius) {
+  // Golden sections: the least value of a convex function, and an end of a concave one.
+  constexpr double kGolden = 0.6180339887498949;
+  constexpr int kSections = 60;  // the rest is below rounding
+  double low = 0, high = 1;
+  for (int k = 0; k < kSections; ++k) {
+    const double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
+    if (distance(a) < distance(b)) {
+      high = b;
+    } else {
+      low = a;
+    }
+  }
+  const double seen = std::max(0.0, reach - std::min(distance(0.0), distance(1.0)));
+  const double missed = reach - distance(0.5 * (low + high)) - seen;
+  return missed > kMissed * radius ? missed : 0;
+}
+
+/// Watches for passages. While everything is slow this costs a comparison per grain and step. A few
+/// fast grains, and each flat wall that is fast, take one look at all grains each; many fast grains
+/// take a search with cells in each step.
+template <int Dim>
+class PassageWatch {
+ public:
+  PassageWatch() = default;  ///< watches nothing
+  /// @param blocks           of slots, which may be noted from side by side
+  /// @param smallest_radius  of all grains [m]; infinite: everything counts as slow
+  /// @param walls            as they are at time 0
+  PassageWatch(std::size_t blocks, double smallest_radius, const std::vector<Wall<Dim>>& walls)
+      : slow_(kSlow * smallest_radius), long_ways_(blocks) {
+    remember(walls, 0);
+  }
+
+  /// When it was looked last [s]: ways are counted from there.
+  double since() const { return since_; }
+
+  /// Notes a grain of a block that has gone far against the frame, which has moved by frame_way.
+  void note(std::size_t block, int slot, const Vec<Dim>& from, const Vec<Dim>& to,
+            const Vec<Dim>& frame_way) {
+    const Vec<Dim> way = to - from - frame_way;
+    if (way.squaredNorm() > slow_ * slow_) long_ways_[block].push_back({slot, from});
+  }
+
+  /// Ends the run if something has passed through something since it was looked last.
+  /// @param count      number of grains
+  /// @param record     record(slot), as the grains are now
+  /// @param number     number(slot) of a grain
+  /// @param t          time [s]
+  /// @param frame_way  what the frame has moved by meanwhile [m]
+  /// @param dt         time step [s]
+  /// @throws SimulationError that names the two, the place and the time step that would do
+  template <class RecordOf, class NumberOf>
+  void expect_no_passage(int count, RecordOf&& record, NumberOf&& number,
+                         const std::vector<Wall<Dim>>& walls, double t, const Vec<Dim>& frame_way,
+                         double dt) {
+    if (!std::isfinite(slow_)) return;
+    const Passage passage = find(count, record, walls, t - since_, frame_way);
+    for (auto& list : long_ways_) list.clear();
+    remember(walls, t);
+    if (passage.slot < 0) return;
+    std::ostringstream message;
+    message << "t = " << t << " s: grain " << number(passage.slot) << " passed through ";
+    if (passage.wall >= 0) {
+      message << "wall " << walls[static_cast<std::size_t>(passage.wall)].name;
+    } else {
+      message << "grain " << number(passage.other);
+    }
+    message << " near (";
+    for (int d = 0; d < Dim; ++d) message << (d > 0 ? ", " : "") << passage.place[d];
+    message << ") m: in one step it moved by " << passage.way
+            << " m against it; a time step of at most " << dt * slow_ / passage.way
+            << " s would see the contact (a stiffer law asks for a smaller step by itself)";
+    throw SimulationError(message.str());
+  }
+
+ private:
+  /// The way of a grain since it was looked last, too long to be left unseen.
+  struct LongWay {
+    int slot;
+    Vec<Dim> from;
+  };
+  /// What crossed what.
+  struct Passage {
+    int slot = -1;                      // of the grain; -1: nothing crossed
+    int other = -1;                     // slot of the other grain, or
+    int wall = -1;                      // place of the wall
+    Vec<Dim> place = Vec<Dim>::Zero();  // of the grain, halfway [m]
+    double way = 0;                     // against the other one [m]
+  };
+
+  void remember(const std::vector<Wall<Dim>>& walls, double t) {
+    since_ = t;
+    wall_points_.resize(walls.size());
+    for (std::size_t w = 0; w < walls.size(); ++w) wall_points_[w] = walls[w].point;
+  }
+
+  template <class RecordOf>
+  Passage find(int count, RecordOf&& record, const std::vector<Wall<Dim>>& walls, double tau,
+               const Vec<Dim>& frame_way) const {
+    // To second order, for a grain that is not fast.
+    const auto start = [&](int slot) -> Vec<Dim> {
+      return record(slot).position() - tau * record(slot).velocity();
+    };
+    std::vector<LongWay> fast;
+    for (const auto& list : long_ways_) fast.insert(fast.end(), list.begin(), list.end());
+    const auto look_at = [&](const LongWay& way, int other,
+                             const Vec<Dim>& others_from) -> Passage {
+      const auto& grain = record(way.slot);
+      if (other == way.slot || !crosses(grain, way.from, record(other), others_from)) return {};
+      const double length =
+          (grain.position() - way.from - record(other).position() + others_from).norm();
+      const bool other_is_faster =
+          record(other).velocity().squaredNorm() > grain.velocity().squaredNorm();
+      if (other_is_faster)
+        return {other, way.slot, -1, halfway(record(other), others_from), length};
+      return {way.slot, other, -1, halfway(grain, way.from), length};
+    };
+    if (fast.size() <= kFew) {
+      for (const LongWay& way : fast) {
+        for (int other = 0; other < count; ++other) {
+          const Passage passage = look_at(way, other, start(other));
+          if (passage.slot >= 0) return passage;
+        }
+      }
+    } else {
+      const Passage passage = find_among_many(fast, count, record, start, frame_way, look_at);
+      if (passage.slot >= 0) return passage;
+    }
+    for (const auto& [slot, from] : fast) {
+      for (std::size_t w = 0; w < walls.size(); ++w) {
+        const Passage passage = through_wall(slot, record(slot), from, walls, w);
+        if (passage.slot >= 0) return passage;
+      }
+    }
+    for (std::size_t w = 0; w < walls.size(); ++w) {
+      if (!walls[w].has_end()) continue;
+      if ((walls[w].point - wall_points_[w] - frame_way).norm() <= slow_) continue;
+      for (int slot = 0; slot < count; ++slot) {
+        const Passage passage = through_wall(slot, record(slot), start(slot), walls, w);
+        if (passage.slot >= 0) return passage;
+      }
+    }
+    return {};
+  }
+
+  /// Where many are fast, a search for the balls around their ways that touch finds who may have
+  /// met. Ways are seen from the frame.
+  template <class RecordOf, class Start, class Look>
+  static Passage find_among_many(const std::vector<LongWay>& fast, int count, RecordOf&& record,
+                                 Start&& start, const Vec<Dim>& frame_way, Look&& look_at) {
+    std::vector<Vec<Dim>> from;
+    std::vector<bool> is_fast(static_cast<std::size_t>(count));
+    for (int slot = 0; slot < count; ++slot) from.push_back(start(slot));
+    for (const LongWay& way : fast) {
+      from[static_cast<std::size_t>(way.slot)] = way.from;
+      is_fast[static_cast<std::size_t>(way.slot)] = true;
+    }
+    Columns<Dim> middle(Dim, count);
+    Eigen::VectorXd reach(count);
+    for (int slot = 0; slot < count; ++slot) {
+      const Vec<Dim> half =
+          0.5 * (record(slot).position() - from[static_cast<std::size_t>(slot)] - frame_way);
+      middle.col(slot) = record(slot).position() - half;
+      reach[slot] = record(slot).radius() + half.norm();
+    }
+    ContactSearch<Dim> search;
+    for (const auto [i, j] : search.find(middle, reach)) {
+      if (!is_fast[static_cast<std::size_t>(i)] && !is_fast[static_cast<std::size_t>(j)]) continue;
+      const Passage passage = look_at(LongWay{i, from[static_cast<std::size_t>(i)]}, j,
+                                      from[static_cast<std::size_t>(j)]);
+      if (passage.slot >= 0) return passage;
+    }
+    return {};
+  }
+
+  template <class Record>
+  static Vec<Dim> halfway(const Record& grain, const Vec<Dim>& from) {
+    return 0.5 * (grain.position() + from);
+  }
+  template <class Record>
+  static bool pinned(const Record& grain) {
+    return !(grain.at[Record::kInverseMass] > 0);
+  }
+
+  template <class Record>
+  static bool crosses(const Record& grain, const Vec<Dim>& from, const Record& other,
+                      const Vec<Dim>& others_from) {
+    if (pinned(grain) && pinned(other)) return false;
+    const Vec<Dim> start = from - others_from;
+    const Vec<Dim> way = grain.position() - other.position() - start;
+    const double reach = grain.radius() + other.radius();
+    // Most are too far away: |start| > reach + |way|.
+    if (start.squaredNorm() > 2 * (reach * reach + way.squaredNorm())) return false;
+    return missed_overlap([&](double s) { return (start + s * way).norm(); }, reach,
+                          std::min(grain.radius(), other.radius())) > 0;
+  }
+  /// A wall behind whose face all is solid, and a round one, are not passed through: overlaps tell.
+  template <class Record>
+  Passage through_wall(int slot, const Record& grain, const Vec<Dim>& from,
+                       const std::vector<Wall<Dim>>& walls, std::size_t w) const {
+    const Wall<Dim>& wall = walls[w];
+    if (!wall.has_end() || (pinned(grain) && !wall.yields())) return {};
+    // Seen from the wall, the grain ends where it is now.
+    const Vec<Dim> to = grain.position();
+    const Vec<Dim> way = to - from - (wall.point - wall_points_[w]);
+    if (wall.foot(to).distance > grain.radius() + way.norm()) return {};
+    const double missed =
+        missed_overlap([&](double s) { return wall.foot(to - (1 - s) * way).distance; },
+                       grain.radius(), grain.radius());
+    if (!(missed > 0)) return {};
+    return {slot, -1, static_cast<int>(w), halfway(grain, from), way.norm()};
+  }
+
+  /// Up to so many fast grains each is held against all others, more are searched for with cells.
+  /// It was not tuned; nothing but speed depends on it.
+  static constexpr std::size_t kFew = 10;
+
+  double slow_ = std::numeric_limits<double>::infinity();  // way in which nothing is missed [m]
+  double since_ = 0;                                       // when it was looked last [s]
+  std::vector<Vec<Dim>> wall_points_;                      // where walls were then [m]
+  std::vector<std::vector<LongWay>> long_ways_;            // of each block
+};
+
+}  // namespace lagrain
