@@ -119,7 +119,8 @@ class HardCases {
         "limit, beyond it the run stops: for a deep overlap, or because the disc passed between "
         "two steps (dashed: the share for whom no step ends in a deep overlap). (e) Elastic "
         "collisions by Hertz's law against the time step; beyond 1 the run was deceived about the "
-        "speed of impact. (f) A crystal at rest against the same far from the origin. What to take from it: "
+        "speed of impact. (f) A crystal at rest against the same far from the origin. What to take "
+        "from it: "
         "elastic friction for what must stand; contacts so stiff that no grain goes further than "
         "some hundredths of its radius in a step (the run stops otherwise); half of the safe step "
         "for an error of " +

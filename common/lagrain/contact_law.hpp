@@ -4,6 +4,7 @@
 /// What a contact law is. A law is a small immutable aggregate of SI numbers; laws compose by
 /// holding another law.
 
+#include <lagrain/dashpot.hpp>
 #include <lagrain/needs.hpp>
 #include <lagrain/touch.hpp>
 
@@ -25,7 +26,8 @@ struct NoMemory {
 /// * `Memory<Dim, Real>` is what a contact remembers: kReals numbers, reached by [], zero at first;
 ///   `seen_from_partner` gives what the partner's side of the contact remembers.
 /// * `respond` advances the memory by the time step [s] and returns the force [N] and the losses
-///   [J]; called again with time step 0 it returns the same force and changes nothing.
+///   [J]. With time step 0, for those who only look, it changes nothing: dashpots then exert what
+///   they do at this moment (see onset_weight), and springs what their memory holds.
 /// * `elastic_energy` is what the springs of the contact hold [J].
 /// * `contact_time` is the duration of a free collision [s], from the effective mass [kg] and the
 ///   effective radius [m]. The time step is chosen from it.
@@ -55,14 +57,18 @@ concept ContactLaw = requires(const L law, const Touch<Dim>& touch,
 /// the larger.
 inline constexpr double kTangentialMobility = 5;
 
-/// A law along the normal alone, which friction laws build on. `normal_force` is the force [N],
-/// never negative; `elastic_force` is its part without the dashpot [N]; `stiffness_at` is the slope
-/// of the elastic force against the overlap [N/m].
+/// A law along the normal alone, which friction laws build on. `push` is the force [N], never
+/// negative, and the dashpot's loss [J] in a time step [s]; `elastic_force` is the force without
+/// the dashpot [N]; `stiffness_at` is its slope against the overlap [N/m], and kConstantStiffness
+/// says whether that is one number. `kDashpotMean` is the mean of the dashpot's coefficient between
+/// no overlap and some, over the one there [-].
 template <class L, int Dim>
-concept NormalLaw = ContactLaw<L, Dim> && requires(const L law, const Touch<Dim>& touch) {
-  { law.normal_force(touch) } -> std::convertible_to<double>;   // [N], never negative
-  { law.elastic_force(touch) } -> std::convertible_to<double>;  // [N], without the dashpot
-  { law.stiffness_at(touch) } -> std::convertible_to<double>;   // [N/m]
+concept NormalLaw = ContactLaw<L, Dim> && requires(const L law, const Touch<Dim>& touch, double x) {
+  { L::kConstantStiffness } -> std::convertible_to<bool>;
+  { L::kDashpotMean } -> std::convertible_to<double>;
+  { law.push(touch, x) } -> std::same_as<NormalPush<double>>;
+  { law.elastic_force(touch) } -> std::convertible_to<double>;
+  { law.stiffness_at(touch) } -> std::convertible_to<double>;
 };
 
 }  // namespace lagrain

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace lagrain {
 
@@ -15,24 +16,56 @@ namespace lagrain {
 ///     f_t = -(kt xi + gt slip),  |f_t| <= mu f_n,
 ///     kt = ratio x normal stiffness,  gt = 2 zeta_t sqrt(kt m_eff)
 ///
+/// The slip of a step counts half before the force and half after it: the memory holds the stretch
+/// half a step ahead. A spring that holds then gives back what it took, and the force is of second
+/// order. In the first step of a contact the half before is what has passed since the grains met.
+///
 /// The spring is cut at the limit by itself, then its sum with the dashpot is cut again. So a large
 /// dashpot can neither load the spring nor change the impulse of a grazing impact, and friction
-/// never gives energy: with X = kt xi inside the ball of radius mu f_n and P the point of the ball
-/// nearest to X + gt slip, the loss is slip . (P - X) >= |P - X|^2 / gt.
+/// never gives energy. The halves of a step balance where nothing is cut. A cut loses as long as
+/// the limit at most doubles within half a step, which it does once a contact has lasted a step.
+/// With X = kt xi inside the ball of radius mu f_n and P the point of the ball nearest to
+/// X + gt slip, the dashpot takes slip . (P - X) >= |P - X|^2 / gt.
+///
+/// Where the stiffness follows the overlap (Hertz), a spring whose contact is loaded keeps its
+/// force X, one that is unloaded keeps its stretch X / kt. Its energy X^2 / (2 kt) falls in both
+/// cases, and what it loses counts as friction: no path of overlap and slip can gain energy, which
+/// a spring of fixed stretch would on being loaded (Thornton, Cummins & Cleary, Powder Technol. 233
+/// (2013) 30; Elata & Berryman, Mech. Mater. 24 (1996) 229). The contact remembers its kt for it.
 ///
 /// Source: Cundall & Strack, Geotechnique 29 (1979) 47.
 template <class Normal>
 struct CundallStrack {
   static constexpr Needs needs{.spin = true, .memory = true};  ///< both
 
-  /// Stretch of the tangential spring [m], in the contact plane.
+  /// What is remembered of the stiffness where it never changes.
+  struct NoStiffness {
+    bool operator==(const NoStiffness&) const = default;
+  };
+  /// Stretch of the tangential spring [m], in the contact plane, and the spring's stiffness [N/m]
+  /// where it changes.
   template <int Dim, class Real = double>
   struct Memory {
-    static constexpr int kReals = Dim;                          ///< one for each component
-    Vec<Dim, Real> stretch = Vec<Dim, Real>::Zero();            ///< xi [m]
-    Real& operator[](int k) { return stretch[k]; }              ///< component k [m]
-    const Real& operator[](int k) const { return stretch[k]; }  ///< component k [m]
-    Memory seen_from_partner() const { return {-stretch}; }     ///< the opposite stretch
+    static constexpr bool kStiffness = !Normal::kConstantStiffness;  ///< whether it is remembered
+    static constexpr int kReals = kStiffness ? Dim + 1 : Dim;        ///< one for each component
+    Vec<Dim, Real> stretch = Vec<Dim, Real>::Zero();                 ///< xi, half a step ahead [m]
+    [[no_unique_address]] std::conditional_t<kStiffness, Real, NoStiffness> stiffness{};  ///< kt
+    /// Component k [m], or the stiffness [N/m].
+    /// @{
+    Real& operator[](int k) {
+      if constexpr (kStiffness) {
+        if (k == Dim) return stiffness;
+      }
+      return stretch[k];
+    }
+    const Real& operator[](int k) const {
+      if constexpr (kStiffness) {
+        if (k == Dim) return stiffness;
+      }
+      return stretch[k];
+    }
+    /// @}
+    Memory seen_from_partner() const { return {-stretch, stiffness}; }  ///< the opposite stretch
     bool operator==(const Memory&) const = default;
   };
 
@@ -48,20 +81,39 @@ struct CundallStrack {
                               double time_step) const {
     using std::sqrt;
     Response<Dim, Real> response;
-    const Real fn = normal.normal_force(touch);
-    response.dashpot_loss = (fn - normal.elastic_force(touch)) * touch.closing * time_step;
+    const auto [fn, dashpot_loss] = normal.push(touch, time_step);
+    response.dashpot_loss = dashpot_loss;
 
     // One number for a linear spring, one per contact for Hertz's; so are its root and inverse.
-    const auto kt = stiffness_ratio * normal.stiffness_at(touch);
+    const auto kn = normal.stiffness_at(touch);
+    const auto kt = stiffness_ratio * kn;
     const auto compliance = 1 / kt;
-    const Real gt = 2 * tangential_damping_ratio * sqrt(kt) * sqrt(touch.effective_mass);
+    const Real since = lasted(touch, time_step);
+    const Real gt = 2 * tangential_damping_ratio * sqrt(kt) * sqrt(touch.effective_mass) *
+                    onset_weight(since, Normal::kDashpotMean, time_step);
+    const double half = 0.5 * time_step;
+    const Real limit = friction * fn;
+    const Real limit_ahead = friction * positive_part(Real(fn + kn * touch.closing * half));
+    const auto begins = since < Real(time_step);
+
     Vec<Dim, Real> xi = turned_with<Dim, Real>(memory.stretch, touch, time_step);
-    const Real stored = 0.5 * kt * squared(xi);
-    xi = cut<Dim, Real>(xi + time_step * touch.slip, friction * fn * compliance);
-    const Vec<Dim, Real> ft = cut<Dim, Real>(-(kt * xi + gt * touch.slip), friction * fn);
-    memory.stretch = xi;
+    Real stored = 0.5 * kt * squared(xi);
+    if constexpr (!Normal::kConstantStiffness) {
+      stored = 0.5 * memory.stiffness * squared(xi);
+      xi = smaller(Real(memory.stiffness * compliance), Real(1)) * xi;
+    }
+    xi = cut<Dim, Real>(xi + select(begins, since, Real(half)) * touch.slip, limit * compliance);
+    const Vec<Dim, Real> ft = cut<Dim, Real>(-(kt * xi + gt * touch.slip), limit);
+    xi = cut<Dim, Real>(xi + half * touch.slip, limit_ahead * compliance);
+    if (time_step > 0) {
+      memory.stretch = xi;
+      if constexpr (!Normal::kConstantStiffness) memory.stiffness = kt;
+    }
     response.force = fn * touch.normal + ft;
-    response.friction_loss = -dot(ft, touch.slip) * time_step - (0.5 * kt * squared(xi) - stored);
+    const Real loss = -dot(ft, touch.slip) * time_step - (0.5 * kt * squared(xi) - stored);
+    // A spring that begins between two steps errs as the one along the normal does, which is no
+    // work of friction.
+    response.friction_loss = select(begins, positive_part(loss), loss);
     return response;
   }
 

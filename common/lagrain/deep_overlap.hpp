@@ -33,8 +33,8 @@ struct DeepOverlap {
 };
 
 /// How many times as stiff a contact has to be if its overlap is to stay below a limit [-]: then
-/// the springs hold at the limit what they hold now, and what they have not stopped yet. (A spring's
-/// energy is proportional to its stiffness.)
+/// the springs hold at the limit what they hold now, and what they have not stopped yet. (The
+/// energy of a spring goes with its stiffness.)
 /// @param touch  the contact as it is
 /// @param limit  overlap [m]
 template <int Dim, class Law>

@@ -25,7 +25,10 @@ namespace lagrain {
 /// Discs use the same formula (with their radii): the contact line of two cylinders has no finite
 /// stiffness of its own, so in the plane this is a model, not elasticity.
 struct Hertz {
-  static constexpr Needs needs{};  ///< neither spin nor memory
+  static constexpr Needs needs{};                    ///< neither spin nor memory
+  static constexpr bool kConstantStiffness = false;  ///< it grows with the overlap
+  /// Its dashpot goes with overlap^(1/4), whose mean is 4/5 of the last.
+  static constexpr double kDashpotMean = 0.8;
   /// Its contacts remember nothing.
   template <int Dim, class Real = double>
   using Memory = NoMemory;
@@ -63,17 +66,18 @@ struct Hertz {
     return coefficient(touch.effective_radius) * touch.overlap * sqrt(touch.overlap);
   }
   template <int Dim, class Real>
-  Real normal_force(const Touch<Dim, Real>& touch) const {
+  NormalPush<Real> push(const Touch<Dim, Real>& touch, double time_step) const {
     using std::sqrt;
     const Real k = coefficient(touch.effective_radius);
     const Real root = sqrt(touch.overlap);
     const Real damping = std::sqrt(5.0) * damping_ratio * sqrt(touch.effective_mass * k * root);
-    return positive_part(Real(k * touch.overlap * root + damping * touch.closing));
+    return push_of<Dim, Real>(touch, k * touch.overlap * root,
+                              {damping, kLag * 1.5 * k * root, kDashpotMean}, time_step);
   }
   template <int Dim, class Real>
   Response<Dim, Real> respond(const Touch<Dim, Real>& touch, NoMemory&, double time_step) const {
-    const Real f = normal_force(touch);
-    return {f * touch.normal, (f - elastic_force(touch)) * touch.closing * time_step, 0};
+    const auto [force, loss] = push(touch, time_step);
+    return {force * touch.normal, loss, 0};
   }
   template <int Dim>
   double elastic_energy(const Touch<Dim>& touch, const NoMemory&) const {
@@ -98,6 +102,12 @@ struct Hertz {
   double largest_damping_ratio() const { return damping_ratio; }
   bool conservative() const { return damping_ratio == 0; }
   /// @}
+
+ private:
+  /// By how much the dashpot's velocities are predicted too fast, of the stiffness [-]. It was
+  /// fitted: with 25 steps a restitution of 0.2 errs by 0.2 %, with none or twice of it by 0.3 %,
+  /// which is where test_contact_law holds it.
+  static constexpr double kLag = 0.25;
 };
 
 static_assert(NormalLaw<Hertz, 2> && NormalLaw<Hertz, 3>);

@@ -21,7 +21,9 @@ namespace lagrain {
 /// Source: Cundall & Strack, Geotechnique 29 (1979) 47; Schwager & Poeschel, Granular Matter 9
 /// (2007) 465.
 struct LinearSpring {
-  static constexpr Needs needs{};  ///< neither spin nor memory
+  static constexpr Needs needs{};                   ///< neither spin nor memory
+  static constexpr bool kConstantStiffness = true;  ///< whatever the overlap
+  static constexpr double kDashpotMean = 1;         ///< its dashpot does not know the overlap
   /// Its contacts remember nothing.
   template <int Dim, class Real = double>
   using Memory = NoMemory;
@@ -48,15 +50,16 @@ struct LinearSpring {
     return stiffness * touch.overlap;
   }
   template <int Dim, class Real>
-  Real normal_force(const Touch<Dim, Real>& touch) const {
+  NormalPush<Real> push(const Touch<Dim, Real>& touch, double time_step) const {
     using std::sqrt;
     const Real damping = 2 * damping_ratio * std::sqrt(stiffness) * sqrt(touch.effective_mass);
-    return positive_part(Real(elastic_force(touch) + damping * touch.closing));
+    return push_of<Dim, Real>(touch, elastic_force(touch), {damping, lag(), kDashpotMean},
+                              time_step);
   }
   template <int Dim, class Real>
   Response<Dim, Real> respond(const Touch<Dim, Real>& touch, NoMemory&, double time_step) const {
-    const Real f = normal_force(touch);
-    return {f * touch.normal, (f - elastic_force(touch)) * touch.closing * time_step, 0};
+    const auto [force, loss] = push(touch, time_step);
+    return {force * touch.normal, loss, 0};
   }
   template <int Dim>
   double elastic_energy(const Touch<Dim>& touch, const NoMemory&) const {
@@ -72,6 +75,14 @@ struct LinearSpring {
   double largest_damping_ratio() const { return damping_ratio; }
   bool conservative() const { return damping_ratio == 0; }
   /// @}
+
+ private:
+  /// By how much the dashpot's velocities are predicted too fast, as a stiffness [N/m]. A damped
+  /// oscillation by velocity Verlet decays faster by the factor 1 + (11/24) (omega0 dt)^2 for small
+  /// zeta (expand its difference equation). The term in zeta is due to the first step of an impact
+  /// and was fitted: with 25 steps a restitution of 0.2 errs by 0.05 % with it, by 0.3 % without
+  /// it, and by 0.7 % without both. test_contact_law holds it below 0.1 %.
+  double lag() const { return (11.0 / 24 + 0.5 * damping_ratio) * stiffness; }
 };
 
 static_assert(NormalLaw<LinearSpring, 2> && NormalLaw<LinearSpring, 3>);

@@ -34,14 +34,14 @@ struct ViscousFriction {
   template <int Dim, class Real>
   Response<Dim, Real> respond(const Touch<Dim, Real>& touch, NoMemory&, double time_step) const {
     using std::sqrt;
-    const Real fn = normal.normal_force(touch);
+    const auto [fn, dashpot_loss] = normal.push(touch, time_step);
     const Real g = 2 * tangential_damping_ratio * sqrt(normal.stiffness_at(touch)) *
-                   sqrt(touch.effective_mass);
+                   sqrt(touch.effective_mass) *
+                   onset_weight(lasted(touch, time_step), Normal::kDashpotMean, time_step);
     const Real limit = friction * fn;
     const Real speed = sqrt(squared(touch.slip));
     const Real coefficient = select(g * speed <= limit, g, Real(limit / speed));
-    return {fn * touch.normal - coefficient * touch.slip,
-            (fn - normal.elastic_force(touch)) * touch.closing * time_step,
+    return {fn * touch.normal - coefficient * touch.slip, dashpot_loss,
             coefficient * speed * speed * time_step};
   }
 

@@ -289,7 +289,7 @@ struct Wall {
 };
 
 /// Lists for each wall those that it may meet, with which it is one surface then: the boxes of the
-/// two touch, a corner lies on a wall without an end, or one of the two moves. Also finds the seams.
+/// two touch, a corner lies on a wall without an end, or one of them moves. Also finds the seams.
 template <int Dim>
 void join_walls(std::vector<Wall<Dim>>& walls);
 

@@ -90,7 +90,8 @@ struct Heap {
       std::vector<Memory> memories(size);
       if constexpr (Memory::kReals > 0) {
         for (Memory& m : memories) {
-          for (int r = 0; r < Memory::kReals; ++r) m[r] = between(-1e-3, 1e-3);
+          for (int r = 0; r < Dim; ++r) m[r] = between(-1e-3, 1e-3);
+          for (int r = Dim; r < Memory::kReals; ++r) m[r] = between(0, 1e4);  // a stiffness
         }
       }
       return memories;
@@ -102,7 +103,8 @@ struct Heap {
   }
 
   ContactScene<Dim, Law> scene() {
-    return {grains.data(), loads.data(), &materials, &laws, walls.data(), 1e-4, 0.01};
+    // The step is so long that some contacts began within it.
+    return {grains.data(), loads.data(), &materials, &laws, walls.data(), 1e-2, 0.01};
   }
   Body<Dim, needs> body(int i) const { return read_bodies<double>(grains.data(), {i}); }
 };

@@ -2,6 +2,7 @@
 #include <lagrain/contact_law.hpp>
 
 #include <lagrain/random.hpp>
+#include <lagrain/time_step.hpp>
 
 #include <support/cases.hpp>
 #include <support/scenes.hpp>
@@ -54,16 +55,43 @@ Vec<Dim> random_stretch(const Touch<Dim>& touch, Random& random) {
          (flat.normalized() + random.uniform(-1, 1) * touch.normal).normalized();
 }
 
+/// A contact that remembers some stretch and, if it follows the overlap, some stiffness.
+template <class Law, int Dim>
+auto random_memory(const Law& law, const Touch<Dim>& touch, Random& random) {
+  typename Law::template Memory<Dim> memory{};
+  if constexpr (Law::needs.memory) {
+    memory.stretch = random_stretch<Dim>(touch, random);
+    if constexpr (memory.kStiffness) {
+      memory.stiffness =
+          random.uniform(0, 2) * law.stiffness_ratio * law.normal.stiffness_at(touch);
+    }
+  }
+  return memory;
+}
+
+/// The refinement of a pair of grains of radius and mass 1 that gives a number of steps to a
+/// contact.
+template <class Law>
+double refinement_for(const Law& law, double steps) {
+  const double contact = law.contact_time(0.5, 0.5);
+  const double damped = largest_damped_phase(law.damping_ratio) * law.natural_time(0.5, 0.5);
+  return steps * std::min(kLargestContactFraction * contact, damped) / contact;
+}
+
 /// Root mean square error of the restitution over the places that a first and a last contact can
 /// take in a time step. (A contact of a whole number of steps ends as it began, and the errors of a
 /// reversible scheme cancel: the steps must differ as well.)
 template <int Dim, class Law>
-double restitution_error(const Law& law, double wanted, double refinement) {
+double restitution_error(const Law& law, double wanted, double refinement,
+                         const Strike& strike = {}) {
   constexpr int kPhases = 32;
   double sum = 0;
   for (int p = 0; p < kPhases; ++p) {
     const double detuned = refinement * (1 + 0.1 * std::fmod(p * std::numbers::phi, 1.0));
-    const Impact impact = head_on<Dim>(law, {.refinement = detuned, .phase = (p + 0.5) / kPhases});
+    Strike shot = strike;
+    shot.refinement = detuned;
+    shot.phase = (p + 0.5) / kPhases;
+    const Impact impact = head_on<Dim>(law, shot);
     sum += std::pow(impact.restitution - wanted, 2);
   }
   return std::sqrt(sum / kPhases);
@@ -87,13 +115,11 @@ TEST_SUITE("contact_law") {
 
         const Impact impact = head_on<Dim>(law, fine);
 
-        // The first force is late by up to a step, in which the dashpot would have taken
-        // 2 zeta omega0 dt of the speed; the spring errs at second order. The effective mass is the
-        // lighter grain's at least times 1/2, and time_step comes from the lightest pair: omega0 dt
-        // is at most pi/10 over the refinement.
+        // Spring and dashpot err at second order. The effective mass is the lighter grain's at
+        // least times 1/2, and time_step comes from the lightest pair: omega0 dt is at most pi/10
+        // over the refinement.
         const double angle = std::numbers::pi / 10 / fine.refinement;
-        const double tolerance = 2 * law.damping_ratio * angle * e + angle * angle;
-        CHECK(std::abs(impact.restitution - e) <= tolerance);
+        CHECK(std::abs(impact.restitution - e) <= angle * angle);
       }
     }
   }
@@ -110,13 +136,50 @@ TEST_SUITE("contact_law") {
       const double fine = restitution_error<C::Dim>(law, e, 32);
       const double order = observed_order(coarse, fine, 8);
 
-      // A first force that is late by part of a step errs as its power of the overlap says: a
-      // dashpot that starts at full force at order 1, Hertz's delta^(1/4) at 5/4, a spring at 2,
-      // Hertz's delta^(3/2) at 5/2.
-      const double predicted = e == 1 ? (linear ? 2 : 2.5) : (linear ? 1 : 1.25);
       CAPTURE(coarse);
       CAPTURE(fine);
-      CHECK(relative_error(order, predicted) < 0.12);
+      if (e < 1 && !linear) {
+        // Hertz's dashpot starts as delta^(1/4). The weight of the first step leaves order 5/4,
+        // below errors that fall with order 2.
+        CHECK(order > 1);
+      } else {
+        // A spring errs at order 2, Hertz's delta^(3/2) at 5/2; a dashpot that knows when its
+        // contact began at order 2.
+        CHECK(relative_error(order, linear ? 2 : 2.5) < 0.12);
+      }
+    }
+  }
+
+  TEST_CASE_TEMPLATE("with 25 steps an impact is right to 0.1 % wherever in a step it begins", C,
+                     Case<2, LinearSpring>, Case<3, LinearSpring>) {
+    // What common/scenes/README.md and figures/README.md say.
+    for (const double e : {1.0, 0.9, 0.7, 0.5, 0.3, 0.2}) {
+      CAPTURE(e);
+      const auto law = make_law<LinearSpring>({.restitution = e});
+      for (const Strike& strike : {Strike{}, Strike{.wall = true}, Strike{.mass_ratio = 8}}) {
+        CAPTURE(strike.wall);
+        CAPTURE(strike.mass_ratio);
+        const double m = strike.wall ? 1 : 1 / (1 + 1 / strike.mass_ratio);
+        // The step is that of a pair of the lighter grain, whose contact is the shortest.
+        const double steps = 25 / (strike.wall ? 1 : std::sqrt(m / 0.5));
+        const double error =
+            restitution_error<C::Dim>(law, e, refinement_for(law, steps), strike) / e;
+        const double half =
+            restitution_error<C::Dim>(law, e, refinement_for(law, 2 * steps), strike) / e;
+
+        CHECK(error < 1e-3);
+        CHECK(relative_error(observed_order(error, half), 2) < 0.25);
+      }
+    }
+  }
+
+  TEST_CASE_TEMPLATE("with 25 steps an impact of Hertz's law is right to 0.3 %", C, Case<2, Hertz>,
+                     Case<3, Hertz>) {
+    for (const double e : {1.0, 0.9, 0.7, 0.5, 0.3, 0.2}) {
+      CAPTURE(e);
+      const auto law = make_law<Hertz>({.restitution = e});
+
+      CHECK(restitution_error<C::Dim>(law, e, refinement_for(law, 25)) / e < 3e-3);
     }
   }
 
@@ -191,10 +254,7 @@ TEST_SUITE("contact_law") {
                                      .friction = mu,
                                      .tangential_damping_ratio = random.uniform(0, 2)});
       const Touch<Dim> touch = random_touch<Dim>(random);
-      typename Law::template Memory<Dim> memory{};
-      if constexpr (Law::needs.memory) {
-        memory.stretch = random_stretch<Dim>(touch, random);
-      }
+      auto memory = random_memory(law, touch, random);
 
       const Response<Dim> response = law.respond(touch, memory, 1e-5);
 
@@ -217,12 +277,8 @@ TEST_SUITE("contact_law") {
                                      .friction = random.uniform(0, 2),
                                      .tangential_damping_ratio = random.uniform(0, 2)});
       const Touch<Dim> touch = random_touch<Dim>(random);
-      typename Law::template Memory<Dim> memory{};
-      double stored = 0;
-      if constexpr (Law::needs.memory) {
-        memory.stretch = random_stretch<Dim>(touch, random);
-        stored = law.elastic_energy(touch, memory);
-      }
+      auto memory = random_memory(law, touch, random);
+      const double stored = law.elastic_energy(touch, memory);
 
       const Response<Dim> response = law.respond(touch, memory, 1e-5);
 
@@ -231,8 +287,8 @@ TEST_SUITE("contact_law") {
     }
   }
 
-  TEST_CASE_TEMPLATE("asked again with time step 0, a law repeats its force and keeps its memory",
-                     C, NORMAL_LAWS, FRICTION_LAWS) {
+  TEST_CASE_TEMPLATE("a law that is asked with time step 0 changes nothing", C, NORMAL_LAWS,
+                     FRICTION_LAWS) {
     using Law = typename C::Law;
     constexpr int Dim = C::Dim;
     Random random(12);
@@ -242,23 +298,21 @@ TEST_SUITE("contact_law") {
                                      .friction = random.uniform(0, 2),
                                      .tangential_damping_ratio = random.uniform(0, 2)});
       const Touch<Dim> touch = random_touch<Dim>(random);
-      typename Law::template Memory<Dim> memory{};
-      if constexpr (Law::needs.memory) {
-        memory.stretch = random_stretch<Dim>(touch, random);
-      }
-      const Response<Dim> first = law.respond(touch, memory, 1e-5);
+      auto memory = random_memory(law, touch, random);
       const auto before = memory;
+      Touch<Dim> still = touch;
+      still.closing = 0;
+      still.slip.setZero();
 
-      const Response<Dim> again = law.respond(touch, memory, 0);
+      const Response<Dim> look = law.respond(touch, memory, 0);
+      CHECK(memory == before);
+      CHECK(look.dashpot_loss == 0);
 
+      // Of a contact that does not move it sees the force of the last step.
+      const Response<Dim> step = law.respond(still, memory, 1e-5);
+      const Response<Dim> again = law.respond(still, memory, 0);
       // The stretch is turned into the plane where it already lies: rounding only.
-      CHECK((again.force - first.force).norm() <= 1e-13 * first.force.norm());
-      CHECK(again.dashpot_loss == 0);
-      if constexpr (Law::needs.memory) {
-        CHECK((memory.stretch - before.stretch).norm() <= 1e-13 * before.stretch.norm());
-      } else {
-        CHECK(memory == before);
-      }
+      CHECK((again.force - step.force).norm() <= 1e-13 * step.force.norm());
     }
   }
 

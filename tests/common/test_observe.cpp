@@ -2,6 +2,7 @@
 #include <lagrain/observe.hpp>
 
 #include <lagrain/cell_grid.hpp>
+#include <lagrain/random.hpp>
 
 #include <support/cases.hpp>
 #include <support/motion_scenes.hpp>
@@ -167,16 +168,18 @@ TEST_SUITE("observe") {
 
   TEST_CASE_TEMPLATE("the ledger of a settling bed closes, and closer with smaller steps", C,
                      Case<2, LinearSpring>, Case<3, LinearSpring>, Case<2, FrictionalSpring>,
-                     Case<3, FrictionalSpring>, Case<2, ViscousSpring>, Case<3, Hertz>) {
+                     Case<3, FrictionalSpring>, Case<2, ViscousSpring>, Case<3, Hertz>,
+                     Case<2, FrictionalHertz>, Case<3, FrictionalHertz>) {
     const auto scene = settling_bed<C::Dim>(64, 3);
 
     const double coarse = ledger_error<C::Dim, typename C::Law>(scene, 1);
     const double fine = ledger_error<C::Dim, typename C::Law>(scene, 8);
 
-    // Losses are summed by rectangles with the same late first force that the grains feel: better
-    // than first order; 1.6 to 1.9 was measured.
-    CHECK(coarse < 0.05);
-    CHECK(observed_order(coarse, fine, 8) > 1.3);
+    // Losses are summed with the velocities that integrators predict, which the first force of a
+    // contact and the first slide make wrong by a step's change: order 1.1 to 1.8 was measured.
+    CHECK(coarse < 0.03);
+    CHECK(fine < 1e-3);
+    CHECK(observed_order(coarse, fine, 8) > 1.1);
   }
 
   TEST_CASE_TEMPLATE("so does the ledger of a shaken box, the walls' work included", C,
@@ -190,14 +193,29 @@ TEST_SUITE("observe") {
     CHECK(observed_order(coarse, fine, 8) > 1.3);
   }
 
-  TEST_CASE_TEMPLATE(
-      "Hertz with a tangential spring leaves a residual of the law itself, some percent", C,
-      Case<2, FrictionalHertz>, Case<3, FrictionalHertz>) {
-    // The stiffness of the tangential spring follows the overlap; its energy changes then without
-    // any slip, and no part of the law pays (Elata & Berryman, Mech. Mater. 24 (1996) 229). Smaller
-    // steps do not mend that.
-    const double fine = ledger_error<C::Dim, FrictionalHertz>(settling_bed<C::Dim>(64, 3), 8);
+  TEST_CASE_TEMPLATE("a gas gains no energy from elastic friction", C,
+                     Case<2, FrictionalSpring>, Case<3, FrictionalSpring>, Case<2, FrictionalHertz>,
+                     Case<3, FrictionalHertz>) {
+    constexpr int Dim = C::Dim;
+    Random random(5);
+    const auto packed = lattice<Dim>({.count = Dim == 2 ? 36 : 64, .speed = 1}, random);
+    // Hertz's law keeps a stiffness of the spring's size.
+    const auto law =
+        make_law<typename C::Law>({.stiffness = 1e6, .friction = 1, .impact_speed = 3});
+    auto sim = make_sim<Dim>(packed.grains, law, box<Dim>(packed.low, packed.high), 8);
+    const double start = energy_ledger(sim).balance();
 
-    CHECK(fine < 0.05);
+    double most = 0;
+    for (int k = 0; k < 20000; ++k) {
+      sim.step();
+      if (k % 50 != 0) continue;
+      const Ledger now = energy_ledger(sim);
+      most = std::max(most, (now.kinetic + now.elastic) / start - 1);
+    }
+    const Ledger end = energy_ledger(sim);
+    CHECK(most < 1e-3);
+    CHECK(std::abs(end.balance() / start - 1) < 1e-3);
+    // Where the stiffness follows the overlap, springs lose what a path could gain.
+    if (!law.normal.kConstantStiffness) CHECK(end.friction > 1e-3 * start);
   }
 }

@@ -77,9 +77,10 @@ struct PlainDem {
     contacts.push_back({i, j, touch, Vec<Dim>::Zero()});
   }
 
-  /// Step 3: apply the law at every contact.
+  /// Step 3: apply the law at every contact. In the first iteration no time has passed yet.
   void apply_law() {
-    for (Contact& c : contacts) c.force = law.normal_force(c.touch) * c.touch.normal;
+    const double passed = acceleration.cols() > 0 ? time_step : 0;
+    for (Contact& c : contacts) c.force = law.push(c.touch, passed).force * c.touch.normal;
   }
 
   /// Step 4: update the trajectories. Gravity and the forces of the contacts are added up, and the

@@ -283,8 +283,10 @@ double static_overlap(const Normal& normal, double effective_radius, double load
 /// How a grain hits its like, or a wall, at an angle.
 struct Glance {
   bool wall = true;
-  double tangent = 4;  ///< tangential over normal speed before; the normal speed is 1 m/s
+  double tangent = 4;     ///< tangential over normal speed before; the normal speed is 1 m/s
+  double mass_ratio = 1;  ///< of the second grain to the first
   double refinement = 10;
+  double phase = 0;  ///< first contact falls at this fraction of a time step
 };
 
 /// Relative velocities of the centres and the slip of the surfaces, along the normal and along the
@@ -297,7 +299,7 @@ struct Rebound {
 
 /// Shoots a grain of radius and mass 1, without spin.
 template <int Dim, class Law>
-Rebound glance(const Law& law, const Glance& shot) {
+Rebound glance(const Law& law, const Glance& shot, double gap = 1e-9) {
   const Vec<Dim> n = up<Dim>();
   Vec<Dim> t = along<Dim>();
   if constexpr (Dim == 3) t = Vec<3>(0.6, 0.8, 0);
@@ -308,15 +310,21 @@ Rebound glance(const Law& law, const Glance& shot) {
   std::vector<Wall<Dim>> walls;
   const Vec<Dim> velocity = shot.tangent * t - n;
   if (shot.wall) {
-    walls.push_back(Wall<Dim>::half_space("wall", -(1 + 1e-9) * n, n));
+    walls.push_back(Wall<Dim>::half_space("wall", -(1 + gap) * n, n));
     list[0].velocity = velocity;
   } else {
     list.push_back(a);
-    list[1].position = -(2 + 1e-9) * n;
+    list[1].mass = shot.mass_ratio;
+    list[1].position = -(2 + gap) * n + (shot.tangent * gap) * t;
     list[0].velocity = 0.5 * velocity;
     list[1].velocity = -0.5 * velocity;
   }
   auto sim = make_sim<Dim>(list, law, walls, shot.refinement);
+  if (shot.phase > 0) {
+    Glance later = shot;
+    later.phase = 0;
+    return glance<Dim>(law, later, (1 + shot.phase) * sim.setting().time_step);
+  }
   bool touched = false;
   for (int k = 0; k < 1000000; ++k) {
     sim.step();
