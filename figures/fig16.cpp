@@ -46,7 +46,9 @@ struct Contest {
   std::function<std::vector<Outcome>(const EngineSettings&)> run;  ///< one per panel
 };
 
-Wall<2> ground() { return Wall<2>::half_space("floor", {0, 0}, {0, 1}); }
+Wall<2> ground() {
+  return Wall<2>::half_space("floor", {0, 0}, {0, 1});
+}
 
 double root_mean_square(const std::vector<double>& values) {
   double sum = 0;
@@ -571,8 +573,9 @@ std::string caption_of(int phases) {
          "bodies neither engine is the cheaper one throughout, the table says where which is. "
          "Box2D needs one step for an impact and springs ten or more, but a step of few discs "
          "costs lagrain less. Friction that sticks (c) is Box2D's best case, a row of discs (e) "
-         "lagrain's. In (a) neither does better than first order: Box2D because impacts fall "
-         "between its steps, lagrain because a dashpot sets in at once. On inclines (d) and in the "
+         "lagrain's. In (a) Box2D is of first order, because impacts fall between its steps, "
+         "lagrain of "
+         "second. On inclines (d) and in the "
          "cradle (e) Box2D errs by single precision alone, which grows with the number of steps; "
          "springs err by their depth. Discs in touch have no one rigid answer (last table): "
          "Box2D's all move off together, springs pass nearly all on. At rest, overlap is to "

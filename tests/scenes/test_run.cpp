@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <lagrain/run.hpp>
 
+#include <lagrain/hooke.hpp>
 #include <lagrain/output.hpp>
 
 #include <support/tolerance.hpp>
@@ -10,9 +11,12 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
+#include <sstream>
 #include <string>
 
 using namespace lagrain;
@@ -46,9 +50,50 @@ std::string error_of(const std::string& text) {
   return "accepted";
 }
 
+/// Forty pairs of discs that meet head-on at 1 m/s each. Their gaps are spread evenly over a time
+/// step, and lasting `steps` steps a contact meets all phases of it.
+std::string head_on_impacts(double restitution, double steps) {
+  const double radius = 0.05, stiffness = 1e7, mass = 1000 * std::numbers::pi * radius * radius;
+  const double contact =
+      LinearSpring::with_restitution(stiffness, restitution).contact_time(mass / 2, radius / 2);
+  std::ostringstream text;
+  text.precision(17);
+  text << "title = \"impacts\"\ndimension = 2\nduration = " << 10 * contact << "\ntime_step = \""
+       << 1 / steps << " contact\"\ngravity = [0, 0]\n"
+       << "normal = \"linear\"\nfriction = \"none\"\n[law]\nstiffness = " << stiffness
+       << "\nrestitution = " << restitution << "\n[materials.a]\ndensity = 1000\n";
+  for (int k = 0; k < 40; ++k) {
+    const double x = radius + (2 + (k + 0.5) / 40) * contact / steps;
+    for (const double side : {-1.0, 1.0}) {
+      text << "[[grain]]\nposition = [" << side * x << ", " << 0.3 * k
+           << "]\nradius = 0.05\nvelocity = [" << -side << ", 0]\n";
+    }
+  }
+  return text.str();
+}
+
 }  // namespace
 
 TEST_SUITE("run") {
+  TEST_CASE("discs that meet head-on leave at the restitution named, at any phase of the step") {
+    for (const double restitution : {1.0, 0.9, 0.5, 0.2}) {
+      for (const double steps : {25.0, 25.5, 50.0}) {
+        CAPTURE(restitution);
+        CAPTURE(steps);
+        const auto run = make_run(scene_of<2>(head_on_impacts(restitution, steps)));
+        run->advance_to(run->scene().duration);
+
+        double worst = 0;
+        for (int i = 0; i < run->count(); ++i) {
+          const double away = (i % 2 == 0 ? -1 : 1) * run->velocities()(0, i);
+          worst = std::max(worst, std::abs(away / restitution - 1));
+        }
+        // Second order: 0.2 % with 25 steps at worst, 0.1 % as root mean square (test_contact_law).
+        CHECK(worst < 2e-3 * std::pow(25 / steps, 2));
+      }
+    }
+  }
+
   TEST_CASE_TEMPLATE(
       "every model that a scene can name runs, with the same bits from two neighbourhoods", S,
       Space<2>, Space<3>) {
