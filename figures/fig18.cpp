@@ -188,7 +188,7 @@ class HardCases {
               .series = {},
               .legend = Corner::bottom_left};
     const auto add = [&](int height, std::int64_t steps, int index) {
-      const Tower r = tower(height, steps, check_stop_);
+      Tower r = tower(height, steps, check_stop_);
       Series measured = series_style(index);
       measured.name = std::to_string(height) + " discs";
       const auto mode = [&](double step) {

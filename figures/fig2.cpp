@@ -65,17 +65,17 @@ void add_cells_and_power(DisplayList& list, const Figure2& figure, const Box& ar
   add_symbol(list, "$x$", x + Vec<2>(7, 0));
   add_sites(list, view, 1.6);
 
-  constexpr std::array<double, 4> kDirection{170, -50, 45,
-                                             130};  // of S_i from its centre [degrees]
-  const std::array<Vec<2>, 4> kCell{Vec<2>(0.07, 0.1), Vec<2>(0.93, 0.1), Vec<2>(0.93, 0.87),
-                                    Vec<2>(0.07, 0.87)};
+  // The symbols stand in these directions from the centre of S_i [degrees], and here in L_i.
+  constexpr std::array<double, 4> kDirection{170, -50, 45, 130};
+  const std::array<Vec<2>, 4> in_cell{Vec<2>(0.07, 0.1), Vec<2>(0.93, 0.1), Vec<2>(0.93, 0.87),
+                                      Vec<2>(0.07, 0.87)};
   for (int i = 0; i < 4; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const double angle = kDirection[k] * std::numbers::pi / 180;
     const std::string name = std::to_string(i + 1);
     add_symbol(list, "$S_" + name + "$",
                view.centre(i) + 0.58 * view.radius(i) * Vec<2>(std::cos(angle), std::sin(angle)));
-    add_symbol(list, "$L_" + name + "$", panel.point({kCell[k][0], kCell[k][1] * height}));
+    add_symbol(list, "$L_" + name + "$", panel.point({in_cell[k][0], in_cell[k][1] * height}));
   }
   add_heading(list, panel.box(), "(a) discs, cells, edges and the power of $x$");
 }

@@ -297,7 +297,7 @@ Box add_plot(DisplayList& list, const Box& area, const Plot& plot) {
   const double bottom =
       kTickLength + kGap + kCapHeight * style::kSmallText + (plot.x.label.empty() ? 1 : x_name);
   const double top = yt.exponent != 0 ? 1.6 * style::kSmallText : 0.5 * style::kSmallText;
-  const Box inside{area.low + Vec<2>(left, bottom), area.high - Vec<2>(std::max(last_x, 3.0), top)};
+  Box inside{area.low + Vec<2>(left, bottom), area.high - Vec<2>(std::max(last_x, 3.0), top)};
   LAGRAIN_EXPECTS(inside.size().minCoeff() > 0, "add_plot: the area is too small for its labels");
   x.from = inside.low[0], x.to = inside.high[0];
   y.from = inside.low[1], y.to = inside.high[1];

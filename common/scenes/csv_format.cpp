@@ -76,7 +76,7 @@ void CsvFormat<Dim>::add_frame(const Run<Dim>& run, const Frame<Dim>& frame, std
 
 template <int Dim>
 fs::path CsvFormat<Dim>::write_last(const Run<Dim>& run, const Frame<Dim>& frame) {
-  const fs::path file = folder_ / "last.csv";
+  fs::path file = folder_ / "last.csv";
   write_file(file, frame_csv(run, frame));
   return file;
 }

@@ -325,7 +325,7 @@ class Placer {
       if (shares_region(i, f)) count(placed_.grains[i].radius);
     }
     const double fraction = solid / (f.high - f.low).prod();
-    const std::string asked = "a solid fraction of " + three_digits(fraction) + " in its region";
+    std::string asked = "a solid fraction of " + three_digits(fraction) + " in its region";
     // Small grains between large ones pass the bound of equal ones.
     const double limit = least == most ? kDensest<Dim> : 1;
     if (fraction > limit) {

@@ -472,7 +472,7 @@ class Reader {
 
   std::vector<std::string> open_sides(TomlTable& s, const std::vector<std::string>& sides) {
     if (!s.has(keys::kOpen)) return {};
-    const auto open = s.texts(keys::kOpen, "a list of sides", "a side");
+    auto open = s.texts(keys::kOpen, "a list of sides", "a side");
     for (const std::string& side : open) {
       if (std::find(sides.begin(), sides.end(), side) != sides.end()) continue;
       s.fail(keys::kOpen, "no side \"" + side + "\"" + suggestion(side, sides) +
