@@ -112,8 +112,8 @@ namespace {
 /// are. It was not tuned: it only has to be small.
 constexpr double kSmall = 1e-3;
 
-/// Feet this close to each other are on the joint of two walls, or on both of two that lie on each
-/// other.
+/// Feet this close to each other are on the joint of two walls, or on both of two that lie on
+/// each other.
 template <int Dim>
 double seam_of(const Wall<Dim>& a, const Wall<Dim>& b) {
   const double sizes[] = {a.size(), b.size()};

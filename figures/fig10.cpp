@@ -36,9 +36,7 @@ constexpr std::array<IntegratorModel, 3> kIntegrators{IntegratorModel::symplecti
                                                       IntegratorModel::fourth_order};
 
 /// How long two trial discs touch [s]; the steps of the sweep are fractions of it.
-double contact_time() {
-  return pi * std::sqrt(trial_mass<2>() / 2 / kK);
-}
+double contact_time() { return pi * std::sqrt(trial_mass<2>() / 2 / kK); }
 
 /// What is tried in every panel.
 struct Choice {
@@ -55,9 +53,7 @@ struct Experiment {
   std::function<Outcome(const Choice&)> run;
 };
 
-Wall<2> floor_at(double y) {
-  return Wall<2>::half_space("floor", {0, y}, {0, 1});
-}
+Wall<2> floor_at(double y) { return Wall<2>::half_space("floor", {0, y}, {0, 1}); }
 
 /// Free flight; error of the place, of the height fallen.
 Outcome free_flight(const Choice& choice, const FigureOptions& options) {
@@ -145,9 +141,7 @@ Eigen::Matrix<double, 6, 1> oblique(const Choice& choice, double phase_gap,
 }
 
 /// Steps of a converged reference.
-double fine_step() {
-  return contact_time() / 20000;
-}
+double fine_step() { return contact_time() / 20000; }
 
 Outcome oblique_error(const Choice& choice, const FigureOptions& options) {
   static const Eigen::Matrix<double, 6, 1> exact = [&] {
@@ -493,8 +487,8 @@ constexpr const char* kCaption =
     "load, and not of the step: smaller steps buy nothing. So: velocity Verlet with 1/25 of the "
     "contact time for scenes with contacts, where an impact errs by 0.1 %, or the largest step "
     "allowed where 1 % will do (last table); the fourth order for smooth and conservative ones. "
-    "Errors of impacts are root mean squares "
-    "over eight phases of the first contact within a step.";
+    "Errors of impacts are root mean squares over eight phases of the first contact within a "
+    "step.";
 
 }  // namespace
 

@@ -46,9 +46,7 @@ struct Contest {
   std::function<std::vector<Outcome>(const EngineSettings&)> run;  ///< one per panel
 };
 
-Wall<2> ground() {
-  return Wall<2>::half_space("floor", {0, 0}, {0, 1});
-}
+Wall<2> ground() { return Wall<2>::half_space("floor", {0, 0}, {0, 1}); }
 
 double root_mean_square(const std::vector<double>& values) {
   double sum = 0;
@@ -574,11 +572,10 @@ std::string caption_of(int phases) {
          "Box2D needs one step for an impact and springs ten or more, but a step of few discs "
          "costs lagrain less. Friction that sticks (c) is Box2D's best case, a row of discs (e) "
          "lagrain's. In (a) Box2D is of first order, because impacts fall between its steps, "
-         "lagrain of "
-         "second. On inclines (d) and in the "
-         "cradle (e) Box2D errs by single precision alone, which grows with the number of steps; "
-         "springs err by their depth. Discs in touch have no one rigid answer (last table): "
-         "Box2D's all move off together, springs pass nearly all on. At rest, overlap is to "
+         "lagrain of second. On inclines (d) and in the cradle (e) Box2D errs by single precision "
+         "alone, which grows with the number of steps; springs err by their depth. Discs in touch "
+         "have no one rigid answer (last table): Box2D's all move off together, springs pass "
+         "nearly all on. At rest, overlap is to "
          "lagrain a load over a stiffness and to Box2D a tolerance, which more iterations or "
          "shorter steps lower, at a price that grows with the column. Forces of springs end at "
          "double precision, Box2D's at single. With lagrain, choose the stiffness by the error, "

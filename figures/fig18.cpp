@@ -120,10 +120,9 @@ class HardCases {
         "two steps (dashed: the share for whom no step ends in a deep overlap). (e) Elastic "
         "collisions by Hertz's law against the time step; beyond 1 the run was deceived about the "
         "speed of impact. (f) A crystal at rest against the same far from the origin. What to take "
-        "from it: "
-        "elastic friction for what must stand; contacts so stiff that no grain goes further than "
-        "some hundredths of its radius in a step (the run stops otherwise); half of the safe step "
-        "for an error of " +
+        "from it: elastic friction for what must stand; contacts so stiff that no grain goes "
+        "further than some hundredths of its radius in a step (the run stops otherwise); half of "
+        "the safe step for an error of " +
         percent(half_step_error_) +
         " in a collision's energy; and an origin within a million radii, where overlaps are right "
         "to " +

@@ -69,8 +69,8 @@ auto random_memory(const Law& law, const Touch<Dim>& touch, Random& random) {
   return memory;
 }
 
-/// The refinement of a pair of grains of radius and mass 1 that gives a number of steps to a
-/// contact.
+/// The refinement of a pair of grains of radius and mass 1 that gives a number of steps to
+/// a contact.
 template <class Law>
 double refinement_for(const Law& law, double steps) {
   const double contact = law.contact_time(0.5, 0.5);

@@ -193,8 +193,8 @@ TEST_SUITE("observe") {
     CHECK(observed_order(coarse, fine, 8) > 1.3);
   }
 
-  TEST_CASE_TEMPLATE("a gas gains no energy from elastic friction", C,
-                     Case<2, FrictionalSpring>, Case<3, FrictionalSpring>, Case<2, FrictionalHertz>,
+  TEST_CASE_TEMPLATE("a gas gains no energy from elastic friction", C, Case<2, FrictionalSpring>,
+                     Case<3, FrictionalSpring>, Case<2, FrictionalHertz>,
                      Case<3, FrictionalHertz>) {
     constexpr int Dim = C::Dim;
     Random random(5);

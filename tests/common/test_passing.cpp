@@ -93,7 +93,8 @@ Wall<Dim> screen(double x) {
 }  // namespace
 
 TEST_SUITE("passing") {
-  // ---- The overlap that nobody sees --------------------------------------------------------------
+  // ---- The overlap that nobody sees
+  // --------------------------------------------------------------
 
   TEST_CASE("the overlap missed on a chord is that of the closed form") {
     Random random(1);
@@ -142,7 +143,8 @@ TEST_SUITE("passing") {
     }
   }
 
-  // ---- Grains through grains ---------------------------------------------------------------------
+  // ---- Grains through grains
+  // ---------------------------------------------------------------------
 
   TEST_CASE_TEMPLATE("a bullet does not pass through a grain unseen", S, Space<2>, Space<3>) {
     constexpr int Dim = S::Dim;
@@ -274,9 +276,8 @@ TEST_SUITE("passing") {
     for (const double way : {1.0, 10.0, 1000.0}) {
       CAPTURE(way);
       const auto passes_at = [&](double aside) {
-        return said<Dim>({ball<Dim>(Vec<Dim>::Zero()),
-                          shot_through<Dim>(aside * n, way / dt * t, dt)},
-                         {}, 10);
+        return said<Dim>(
+            {ball<Dim>(Vec<Dim>::Zero()), shot_through<Dim>(aside * n, way / dt * t, dt)}, {}, 10);
       };
       CHECK(passes_at(2.001) == "");
       CHECK(passes_at(2 - 0.9 * kMissed) == "");
@@ -335,8 +336,8 @@ TEST_SUITE("passing") {
           CAPTURE(at_once);
           CAPTURE(phase);
           CAPTURE(way);
-          const std::vector<Grain<2>> list{
-              ball<2>({0, 0}), shot_through<2>({0, 0}, Vec<2>(way / dt, 0), dt, phase)};
+          const std::vector<Grain<2>> list{ball<2>({0, 0}),
+                                           shot_through<2>({0, 0}, Vec<2>(way / dt, 0), dt, phase)};
           const auto stops = [&](const std::string& message) {
             return has(message, "passed through ") || has(message, "overlaps");
           };
@@ -372,7 +373,8 @@ TEST_SUITE("passing") {
     CHECK(differ == 0);
   }
 
-  // ---- Walls -------------------------------------------------------------------------------------
+  // ---- Walls
+  // -------------------------------------------------------------------------------------
 
   TEST_CASE_TEMPLATE("a bullet does not pass through a thin wall unseen", S, Space<2>, Space<3>) {
     constexpr int Dim = S::Dim;
@@ -408,8 +410,8 @@ TEST_SUITE("passing") {
                      Space<2>, Space<3>) {
     constexpr int Dim = S::Dim;
     const auto floor = Wall<Dim>::half_space("floor", Vec<Dim>::Zero(), along<Dim>());
-    const auto drum = Wall<Dim>::cylinder("drum", Vec<Dim>::Zero(),
-                                          Dim == 2 ? Vec<Dim>::Zero() : up<Dim>(), 20);
+    const auto drum =
+        Wall<Dim>::cylinder("drum", Vec<Dim>::Zero(), Dim == 2 ? Vec<Dim>::Zero() : up<Dim>(), 20);
     const double dt = step_of<Dim>({ball<Dim>(9 * along<Dim>())}, {floor});
     for (const double way : {3.0, 100.0, 1e7}) {
       const auto bullet = shot_through<Dim>(1e-3 * along<Dim>(), -way / dt * along<Dim>(), dt, 2.5);
@@ -446,7 +448,8 @@ TEST_SUITE("passing") {
     }
     // One among many.
     std::vector<Grain<Dim>> many;
-    for (int k = 0; k < 30; ++k) many.push_back(ball<Dim>(12.5 * along<Dim>() + (9 + 3 * k) * up<Dim>()));
+    for (int k = 0; k < 30; ++k)
+      many.push_back(ball<Dim>(12.5 * along<Dim>() + (9 + 3 * k) * up<Dim>()));
     many.push_back(grain);
     CHECK(has(said<Dim>(many, {steady}, 20), "grain 30 passed through wall screen"));
     many.pop_back();
@@ -497,9 +500,10 @@ TEST_SUITE("passing") {
     CHECK(said_by(slides, 300) == "");
   }
 
-  TEST_CASE_TEMPLATE("a grain that slides fast over pieces shorter than its way, pressed in by some "
-                     "percent, passes through none of them",
-                     S, Space<2>, Space<3>) {
+  TEST_CASE_TEMPLATE(
+      "a grain that slides fast over pieces shorter than its way, pressed in by some "
+      "percent, passes through none of them",
+      S, Space<2>, Space<3>) {
     constexpr int Dim = S::Dim;
     std::vector<Wall<Dim>> floor;
     for (int k = 0; k < 400; ++k) {
@@ -531,7 +535,8 @@ TEST_SUITE("passing") {
     CHECK(has(said<Dim>({pinned, free}, {wall}, 60), "wall screen"));
   }
 
-  // ---- Many grains -------------------------------------------------------------------------------
+  // ---- Many grains
+  // -------------------------------------------------------------------------------
 
   TEST_CASE("among thousands of grains in changing slots a bullet is named by its number") {
     // The bullet flies through a bed that stirs: slots are sorted now and then.
@@ -563,7 +568,8 @@ TEST_SUITE("passing") {
     }
   }
 
-  TEST_CASE("where many are fast, whoever passes through another is found, and nobody else is told") {
+  TEST_CASE(
+      "where many are fast, whoever passes through another is found, and nobody else is told") {
     // Rows that fly through each other in lanes, and one grain in the lane of another.
     const double dt = step_of<2>({ball<2>({0, 0}), ball<2>({9, 0})}, {});
     for (const double way : {0.5, 3.0, 50.0, 1e4}) {

@@ -119,8 +119,8 @@ TEST_SUITE("pinned grains") {
     constexpr int Dim = S::Dim;
     Random random(1);
     const auto list = rough_base<Dim>(12, 12, random);
-    auto sim = make_sim<Dim, LinearSpring, CellGrid<Dim>>(list, soft_landing(), {}, 1,
-                                                          -10 * up<Dim>());
+    auto sim =
+        make_sim<Dim, LinearSpring, CellGrid<Dim>>(list, soft_landing(), {}, 1, -10 * up<Dim>());
     const auto& inverse_mass = sim.grains().inverse_mass;
     const PinnedGrains pinned(static_cast<int>(list.size()),
                               [&](int i) { return double(inverse_mass[i]); });
@@ -143,7 +143,8 @@ TEST_SUITE("pinned grains") {
     CHECK(sim.refreshes() > 1);
     CHECK(sim.amended() > 0);
     CHECK(audit.missed() == 0);
-    CHECK(relative_error(static_cast<double>(audit.contacts()), static_cast<double>(touched)) < 0.05);
+    CHECK(relative_error(static_cast<double>(audit.contacts()), static_cast<double>(touched)) <
+          0.05);
     for (int i = 0; i < static_cast<int>(list.size()); ++i) {
       if (!list[static_cast<std::size_t>(i)].pinned) continue;
       CHECK(sim.grains().position.col(i) == list[static_cast<std::size_t>(i)].position);
@@ -203,7 +204,8 @@ TEST_SUITE("pinned grains") {
     const auto floor = Wall<Dim>::half_space("floor", -0.2 * up<Dim>(), up<Dim>());
     for (const bool with_loose_one : {true, false}) {
       std::vector<Grain<Dim>> list{ball<Dim>(Vec<Dim>::Zero(), true)};
-      if (with_loose_one) list.push_back(ball<Dim>(20 * along<Dim>() - 0.1 * up<Dim>(), false, 0.1));
+      if (with_loose_one)
+        list.push_back(ball<Dim>(20 * along<Dim>() - 0.1 * up<Dim>(), false, 0.1));
       auto sim = make_sim<Dim>(list, soft_landing(), {floor, piston}, 1);
       run_for(sim, 3);
       CHECK((sim.walls()[1].force - 30 * up<Dim>()).norm() < 1e-8);
@@ -235,7 +237,8 @@ TEST_SUITE("pinned grains") {
     CHECK(contact_statistics(sim).contacts == 2);
   }
 
-  // ---- The time step -----------------------------------------------------------------------------
+  // ---- The time step
+  // -----------------------------------------------------------------------------
 
   TEST_CASE("fine pinned grains do not set the step: a linear spring") {
     // Beads of 1 mm, glued, and balls of 10 mm: the shortest collision is that of two balls.
@@ -327,8 +330,8 @@ TEST_SUITE("pinned grains") {
                          std::sqrt(3 / 1e6)) < 1e-14);
     // Both pinned and loose ones of a material.
     laws.set(2, 1, spring(1));
-    CHECK(relative_error(contact({grain(5, 1, false), grain(1e-6, 1, true)}), std::sqrt(2.5 / 1e8)) <
-          1e-14);
+    CHECK(relative_error(contact({grain(5, 1, false), grain(1e-6, 1, true)}),
+                         std::sqrt(2.5 / 1e8)) < 1e-14);
   }
 
   TEST_CASE_TEMPLATE("the step that is called safe is safe for a grain between pinned ones", S,
@@ -352,7 +355,8 @@ TEST_SUITE("pinned grains") {
     }
   }
 
-  // ---- The same bits -----------------------------------------------------------------------------
+  // ---- The same bits
+  // -----------------------------------------------------------------------------
 
   TEST_CASE_TEMPLATE("over a rough base all neighbourhoods and threads give the same bits", S,
                      Space<2>, Space<3>) {
@@ -360,8 +364,8 @@ TEST_SUITE("pinned grains") {
     Random random(2);
     // More than one block of slots.
     const auto list = rough_base<Dim>(Dim == 2 ? 900 : 36, Dim == 2 ? 600 : 900, random);
-    const auto law = make_law<FrictionalSpring>(
-        {.stiffness = kStiff, .restitution = 0.5, .friction = 0.4});
+    const auto law =
+        make_law<FrictionalSpring>({.stiffness = kStiff, .restitution = 0.5, .friction = 0.4});
     const auto moved = [&]<class N>(N neighbourhood, int threads, bool at_once) {
       auto sim = make_sim<Dim, FrictionalSpring, N>(list, law, {}, 1, -10 * up<Dim>(),
                                                     std::move(neighbourhood));

@@ -179,7 +179,8 @@ void expect_same_rolling(const Rolled<Dim>& pieces, const Rolled<Dim>& whole) {
   CHECK(off < 1e-6 * largest);
 }
 
-// ---- Boxes: the exterior of a convex body, and its interior --------------------------------------
+// ---- Boxes: the exterior of a convex body, and its interior
+// --------------------------------------
 
 /// The faces of an axis-parallel box, turned and moved.
 template <int Dim>
@@ -234,7 +235,8 @@ BoxOfPieces<Dim> random_box(Random& random) {
   return box;
 }
 
-// ---- The nearest features of a sampled surface ---------------------------------------------------
+// ---- The nearest features of a sampled surface
+// ---------------------------------------------------
 
 /// Points of a piece, so dense that none of the piece is further than `step` from one.
 std::vector<Vec<2>> samples(const Wall<2>& wall, int n) {
@@ -309,7 +311,8 @@ std::vector<Wall<3>> fan(const Vec<3>& middle, int count, Random& random, double
 }  // namespace
 
 TEST_SUITE("surfaces") {
-  // ---- Flat joints -------------------------------------------------------------------------------
+  // ---- Flat joints
+  // -------------------------------------------------------------------------------
 
   TEST_CASE_TEMPLATE("a grain rests on a flat joint as it rests anywhere else", S, Space<2>,
                      Space<3>) {
@@ -569,7 +572,8 @@ TEST_SUITE("surfaces") {
     CHECK(relative_error(energy_ledger(sim).balance(), start) < 1e-12);
   }
 
-  // ---- Convex joints -----------------------------------------------------------------------------
+  // ---- Convex joints
+  // -----------------------------------------------------------------------------
 
   TEST_CASE_TEMPLATE("a grain goes round a convex corner in one contact", S, Space<2>, Space<3>) {
     constexpr int Dim = S::Dim;
@@ -718,7 +722,8 @@ TEST_SUITE("surfaces") {
     }
   }
 
-  // ---- Concave joints and joints in the form of a T ----------------------------------------------
+  // ---- Concave joints and joints in the form of a T
+  // ----------------------------------------------
 
   TEST_CASE_TEMPLATE("in a groove both faces carry, as statics says", S, Space<2>, Space<3>) {
     constexpr int Dim = S::Dim;
@@ -837,7 +842,8 @@ TEST_SUITE("surfaces") {
     }
   }
 
-  // ---- Moving pieces -----------------------------------------------------------------------------
+  // ---- Moving pieces
+  // -----------------------------------------------------------------------------
 
   TEST_CASE_TEMPLATE("a gap that opens makes two corners of a joint, and one again when it closes",
                      S, Space<2>, Space<3>) {
@@ -877,7 +883,8 @@ TEST_SUITE("surfaces") {
     CHECK(relative_error(sim.walls()[1].force.norm(), load) < 1e-8);
   }
 
-  // ---- What a contact remembers ------------------------------------------------------------------
+  // ---- What a contact remembers
+  // ------------------------------------------------------------------
 
   TEST_CASE("a spring goes along to the next piece only where the contact passes to it") {
     // Between two walls that meet far below, hardly wider than the disc: in the step in which it
@@ -919,7 +926,8 @@ TEST_SUITE("surfaces") {
     CHECK(in_one_step > 0);
   }
 
-  // ---- Any surface -------------------------------------------------------------------------------
+  // ---- Any surface
+  // -------------------------------------------------------------------------------
 
   TEST_CASE("polylines are touched where the distance to them has a minimum") {
     Random random(12);
@@ -994,7 +1002,8 @@ TEST_SUITE("surfaces") {
   }
 
   TEST_CASE("corners that agree to less than the seam make the same joints") {
-    // The same corner with other last digits in each piece. Flat and convex, seen from outside: one contact.
+    // The same corner with other last digits in each piece. Flat and convex, seen from outside: one
+    // contact on every joint.
     Random random(14);
     int wrong = 0, lost = 0;
     for (int k = 0; k < cases(40, 2000); ++k) {

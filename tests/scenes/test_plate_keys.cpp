@@ -77,16 +77,16 @@ TEST_SUITE("plates in scenes") {
         "point = [1, 0, 0]\ncorners = [[1, 2, 3], [2, 2, 3], [2, 3, 3], [1, 3, 3]]\n"
         "motion = { type = \"steady\", velocity = [0, 0, 1] }\n");
     CHECK(moved.home == Vec<3>(1, 0, 0));
-    CHECK(moved.corners() ==
-          std::vector<Vec<3>>{{2, 2, 3}, {3, 2, 3}, {3, 3, 3}, {2, 3, 3}});
+    CHECK(moved.corners() == std::vector<Vec<3>>{{2, 2, 3}, {3, 2, 3}, {3, 3, 3}, {2, 3, 3}});
     CHECK(moved.moves());
   }
 
   TEST_CASE("a plate reads back from the resolved scene bit for bit") {
     for (const std::string keys :
          {"corners = [[0.1, 0.2, 0.3], [1.7, 0.1, 0.3], [0.3, 0.7, 0.3]]\n",
-          "point = [0.1, 0.7, -0.3]\ncorners = [[0.1, 0.2, 0.3], [1.7, 0.1, 0.3], [0.3, 0.7, "
-          "0.3]]\nmotion = { type = \"shake\", amplitude = [0, 0, 0.1], frequency = 3 }\n",
+          "point = [0.1, 0.7, -0.3]\n"
+          "corners = [[0.1, 0.2, 0.3], [1.7, 0.1, 0.3], [0.3, 0.7, 0.3]]\n"
+          "motion = { type = \"shake\", amplitude = [0, 0, 0.1], frequency = 3 }\n",
           "corners = [[1e-3, 0.1, 0.2], [1.1e-3, 0.1, 0.2], [1.1e-3, 0.10033333333333333, 0.2], "
           "[1e-3, 0.1004, 0.2]]\n",
           // Far away from its own size.

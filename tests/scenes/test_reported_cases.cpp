@@ -97,7 +97,8 @@ constexpr double kDisc = 1000 * std::numbers::pi * 0.05 * 0.05 * 9.81, kSunk = k
 }  // namespace
 
 TEST_SUITE("reported cases") {
-  // ---- Surfaces made of pieces -------------------------------------------------------------------
+  // ---- Surfaces made of pieces
+  // -------------------------------------------------------------------
 
   TEST_CASE("a disc rests on the joint of two segments (box2d#553, rapier#669, phasicFlow#242)") {
     const std::string text = head(2, "3 s", "1e5 N/m") + grain("[0, 0.05]", "50 mm") +
@@ -152,23 +153,23 @@ TEST_SUITE("reported cases") {
   TEST_CASE("a disc slides over the joints of a polyline as over one segment (box2d#553)") {
     const auto slid = [](const std::string& walls) {
       return finished<2>("largest_initial_overlap = 0.02\n" + head(2, "0.5 s", "1e5 N/m", 1) +
-                         grain("[0.1, 0.04922952440170711]", "50 mm", "velocity = [2, 0]\n") + walls);
+                         grain("[0.1, 0.04922952440170711]", "50 mm", "velocity = [2, 0]\n") +
+                         walls);
     };
-    const auto pieces = slid(segment("[0, 0]", "[0.3, 0]", "a") +
-                             segment("[0.3, 0]", "[0.45, 0]", "b") +
-                             segment("[0.45, 0]", "[0.9, 0]", "c") +
-                             segment("[0.9, 0]", "[3, 0]", "d"));
+    const auto pieces =
+        slid(segment("[0, 0]", "[0.3, 0]", "a") + segment("[0.3, 0]", "[0.45, 0]", "b") +
+             segment("[0.45, 0]", "[0.9, 0]", "c") + segment("[0.9, 0]", "[3, 0]", "d"));
     const auto whole = slid(segment("[0, 0]", "[3, 0]", "a"));
     CHECK(relative_error(pieces->velocities()(0, 0), 2) < 1e-12);
     CHECK(std::abs(pieces->positions()(1, 0) - whole->positions()(1, 0)) < 1e-13);
     CHECK(std::abs(pieces->energy_residual()) < 1e-10 * pieces->ledger().kinetic);
   }
 
-  // ---- A plate in space --------------------------------------------------------------------------
+  // ---- A plate in space
+  // --------------------------------------------------------------------------
 
   TEST_CASE("a wall from one point to another in space is refused, with the remedy (lethe PR617)") {
-    const std::string text =
-        head(3, "0.5 s", "1e5 N/m") + grain("[0.5, 0.2, 0.3]", "50 mm");
+    const std::string text = head(3, "0.5 s", "1e5 N/m") + grain("[0.5, 0.2, 0.3]", "50 mm");
     const std::string message =
         error_of<3>(text + "[[wall]]\nname = \"plate\"\nfrom = [0, 0, 0]\nto = [1, 1, 0]\n");
     CHECK(has(message, "wall[0].from"));
@@ -181,13 +182,14 @@ TEST_SUITE("reported cases") {
     CHECK(run->contacts().size() == 1);
   }
 
-  // ---- Pinned grains -----------------------------------------------------------------------------
+  // ---- Pinned grains
+  // -----------------------------------------------------------------------------
 
   TEST_CASE("a pinned disc sunk in the floor exerts nothing (MercuryDPM, in.chute)") {
-    const std::string text =
-        "largest_initial_overlap = 1.5\n" + head(2, "2 s", "1e5 N/m") +
-        grain("[0, 0]", "50 mm", "pinned = true\n") + grain("[0.5, 0.05]", "50 mm") +
-        "[[wall]]\nname = \"floor\"\npoint = [0, 0]\nnormal = [0, 1]\n";
+    const std::string text = "largest_initial_overlap = 1.5\n" + head(2, "2 s", "1e5 N/m") +
+                             grain("[0, 0]", "50 mm", "pinned = true\n") +
+                             grain("[0.5, 0.05]", "50 mm") +
+                             "[[wall]]\nname = \"floor\"\npoint = [0, 0]\nnormal = [0, 1]\n";
     const auto first = started<2>(text);
     CHECK(first->contacts().size() <= 1);
     CHECK(first->ledger().elastic == 0);
@@ -211,11 +213,12 @@ TEST_SUITE("reported cases") {
             grain("[0, 0, \"20 mm\"]", "10 mm") + grain("[\"30 mm\", 0, \"20 mm\"]", "10 mm");
     CHECK(relative_error(started<3>(text)->time_scales().contact, 0.00227326) < 1e-5);
     // Over a floor, too.
-    CHECK(relative_error(
-              started<3>(text + "[[wall]]\nname = \"floor\"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n")
-                  ->time_scales()
-                  .contact,
-              0.00227326) < 1e-5);
+    CHECK(
+        relative_error(
+            started<3>(text + "[[wall]]\nname = \"floor\"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n")
+                ->time_scales()
+                .contact,
+            0.00227326) < 1e-5);
   }
 
   TEST_CASE("where nothing can move a step is asked for, and one in seconds is taken") {
@@ -223,10 +226,12 @@ TEST_SUITE("reported cases") {
                              grain("[0, 0]", "50 mm", "pinned = true\n") +
                              grain("[0.05, 0]", "50 mm", "pinned = true\n") +
                              "[[wall]]\nname = \"floor\"\npoint = [0, 0]\nnormal = [0, 1]\n";
-    CHECK(error_of<2>(text) ==
-          "s.toml: time_step: nothing in the scene can move, so no contact sets a step; give one in "
-          "seconds, or a grain that is not pinned");
-    CHECK(has(error_of<2>("time_step = \"1/50 contact\"\n" + text), "s.toml:1: time_step: nothing"));
+    CHECK(
+        error_of<2>(text) ==
+        "s.toml: time_step: nothing in the scene can move, so no contact sets a step; give one in "
+        "seconds, or a grain that is not pinned");
+    CHECK(
+        has(error_of<2>("time_step = \"1/50 contact\"\n" + text), "s.toml:1: time_step: nothing"));
 
     const auto run = finished<2>("time_step = \"10 us\"\n" + text);
     CHECK(run->steps() == 100);
@@ -256,9 +261,9 @@ TEST_SUITE("reported cases") {
     std::string text = "audit = true\n" + head(3, "0.2 s", "1e5 N/m", 0.5, "elastic");
     for (int k = 0; k < 100; ++k) {
       const auto at = [](int n) { return std::to_string(n * 0.06); };
-      text += grain("[" + at(k % 10) + ", " + at(k / 10) + ", " + std::to_string(0.01 * (k * 7 % 5)) +
-                        "]",
-                    "50 mm", "pinned = true\n");
+      text += grain(
+          "[" + at(k % 10) + ", " + at(k / 10) + ", " + std::to_string(0.01 * (k * 7 % 5)) + "]",
+          "50 mm", "pinned = true\n");
     }
     text +=
         "[[fill]]\ncount = 30\nradius = { uniform = [\"40 mm\", \"50 mm\"] }\n"
@@ -286,8 +291,9 @@ TEST_SUITE("reported cases") {
   TEST_CASE("discs on a rough base in the plane: the same bits from all neighbourhoods") {
     std::string text = "audit = true\n" + head(2, "0.3 s", "1e5 N/m", 0.5, "elastic");
     for (int k = 0; k < 40; ++k) {
-      text += grain("[" + std::to_string(k * 0.03) + ", " + std::to_string(0.01 * (k * 7 % 5)) + "]",
-                    "50 mm", "pinned = true\n");
+      text +=
+          grain("[" + std::to_string(k * 0.03) + ", " + std::to_string(0.01 * (k * 7 % 5)) + "]",
+                "50 mm", "pinned = true\n");
     }
     text +=
         "[[fill]]\ncount = 20\nradius = { uniform = [\"40 mm\", \"50 mm\"] }\n"
@@ -300,14 +306,17 @@ TEST_SUITE("reported cases") {
       return Columns<2>(run->positions());
     };
     const Columns<2> brute = moved("all pairs");
-    const bool triangulated = moved("triangulation") == brute, cells = moved("linked cells") == brute;
+    const bool triangulated = moved("triangulation") == brute,
+               cells = moved("linked cells") == brute;
     CHECK(triangulated);
     CHECK(cells);
   }
 
-  // ---- Passing through ---------------------------------------------------------------------------
+  // ---- Passing through
+  // ---------------------------------------------------------------------------
 
-  TEST_CASE("a bullet that crosses a disc or a thin wall breaks the run off (box2d#73, rapier#421)") {
+  TEST_CASE(
+      "a bullet that crosses a disc or a thin wall breaks the run off (box2d#73, rapier#421)") {
     const std::string shot = with(head(2, "50 ms", "1e3 N/m", 1), "-9.81", "0") +
                              grain("[-1, 0]", "10 mm", "velocity = [100, 0]\n");
     const std::string disc = shot + grain("[0, 0]", "10 mm");
@@ -353,9 +362,10 @@ TEST_SUITE("reported cases") {
   TEST_CASE("a bullet in space, a plate, and one that misses (bullet3#2483)") {
     const std::string shot = with(head(3, "50 ms", "1e3 N/m", 1), "-9.81", "0") +
                              grain("[-1, 0, 0]", "10 mm", "velocity = [100, 3, 1]\n");
-    CHECK(has(recorded<3>(shot + plate("[0, -1, -1], [0, 1, -1], [0.1, 1, 1], [0.1, -1, 1]", "thin"))
-                  .message,
-              "grain 0 passed through wall thin near ("));
+    CHECK(
+        has(recorded<3>(shot + plate("[0, -1, -1], [0, 1, -1], [0.1, 1, 1], [0.1, -1, 1]", "thin"))
+                .message,
+            "grain 0 passed through wall thin near ("));
     CHECK(has(recorded<3>(shot + plate("[0, -1, -1], [0, 1, -1], [0.1, 0, 1]", "thin")).message,
               "grain 0 passed through wall thin near ("));
     const auto missed = recorded<3>(shot + plate("[0, 1, -1], [0, 2, -1], [0, 1.5, 1]", "thin"));
