@@ -575,11 +575,11 @@ std::string caption_of(int phases) {
          "lagrain of second. On inclines (d) and in the cradle (e) Box2D errs by single precision "
          "alone, which grows with the number of steps; springs err by their depth. Discs in touch "
          "have no one rigid answer (last table): Box2D's all move off together, springs pass "
-         "nearly all on. At rest, overlap is to "
-         "lagrain a load over a stiffness and to Box2D a tolerance, which more iterations or "
-         "shorter steps lower, at a price that grows with the column. Forces of springs end at "
-         "double precision, Box2D's at single. With lagrain, choose the stiffness by the error, "
-         "and the largest step: shorter ones help in (a) and (e) alone.";
+         "nearly all on. At rest, overlap is to lagrain a load over a stiffness and to Box2D a "
+         "tolerance, which more iterations or shorter steps lower, at a price that grows with the "
+         "column. Forces of springs end at double precision, Box2D's at single. With lagrain, "
+         "choose the stiffness by the error, and the largest step: shorter ones help in (a) and "
+         "(e) alone.";
 }
 
 /// @param orders  observed in (a), see orders_text
