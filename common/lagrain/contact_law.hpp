@@ -27,7 +27,7 @@ struct NoMemory {
 ///   `seen_from_partner` gives what the partner's side of the contact remembers.
 /// * `respond` advances the memory by the time step [s] and returns the force [N] and the losses
 ///   [J]. With time step 0, for those who only look, it changes nothing: dashpots then exert what
-///   they do at this moment (see onset_weight), and springs what their memory holds.
+///   they do at this moment (see Onset), and springs what their memory holds.
 /// * `elastic_energy` is what the springs of the contact hold [J].
 /// * `contact_time` is the duration of a free collision [s], from the effective mass [kg] and the
 ///   effective radius [m]. The time step is chosen from it.

@@ -88,13 +88,15 @@ struct CundallStrack {
     const auto kn = normal.stiffness_at(touch);
     const auto kt = stiffness_ratio * kn;
     const auto compliance = 1 / kt;
-    const Real since = lasted(touch, time_step);
+    const Onset<Real> onset(touch, time_step);
     const Real gt = 2 * tangential_damping_ratio * sqrt(kt) * sqrt(touch.effective_mass) *
-                    onset_weight(since, Normal::kDashpotMean, time_step);
+                    onset.weight(Normal::kDashpotMean);
     const double half = 0.5 * time_step;
     const Real limit = friction * fn;
     const Real limit_ahead = friction * positive_part(Real(fn + kn * touch.closing * half));
-    const auto begins = since < Real(time_step);
+    const Vec<Dim, Real> ahead = half * touch.slip;
+    Vec<Dim, Real> before = ahead;
+    if (onset.any) before = select(onset.begins, onset.since, Real(half)) * touch.slip;
 
     Vec<Dim, Real> xi = turned_with<Dim, Real>(memory.stretch, touch, time_step);
     Real stored = 0.5 * kt * squared(xi);
@@ -102,18 +104,19 @@ struct CundallStrack {
       stored = 0.5 * memory.stiffness * squared(xi);
       xi = smaller(Real(memory.stiffness * compliance), Real(1)) * xi;
     }
-    xi = cut<Dim, Real>(xi + select(begins, since, Real(half)) * touch.slip, limit * compliance);
+    xi = cut<Dim, Real>(xi + before, limit * compliance);
     const Vec<Dim, Real> ft = cut<Dim, Real>(-(kt * xi + gt * touch.slip), limit);
-    xi = cut<Dim, Real>(xi + half * touch.slip, limit_ahead * compliance);
+    xi = cut<Dim, Real>(xi + ahead, limit_ahead * compliance);
     if (time_step > 0) {
       memory.stretch = xi;
       if constexpr (!Normal::kConstantStiffness) memory.stiffness = kt;
     }
     response.force = fn * touch.normal + ft;
-    const Real loss = -dot(ft, touch.slip) * time_step - (0.5 * kt * squared(xi) - stored);
+    Real loss = -dot(ft, touch.slip) * time_step - (0.5 * kt * squared(xi) - stored);
     // A spring that begins between two steps errs as the one along the normal does, which is no
     // work of friction.
-    response.friction_loss = select(begins, positive_part(loss), loss);
+    if (onset.any) loss = select(onset.begins, positive_part(loss), loss);
+    response.friction_loss = loss;
     return response;
   }
 

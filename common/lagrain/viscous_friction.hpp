@@ -37,7 +37,7 @@ struct ViscousFriction {
     const auto [fn, dashpot_loss] = normal.push(touch, time_step);
     const Real g = 2 * tangential_damping_ratio * sqrt(normal.stiffness_at(touch)) *
                    sqrt(touch.effective_mass) *
-                   onset_weight(lasted(touch, time_step), Normal::kDashpotMean, time_step);
+                   Onset<Real>(touch, time_step).weight(Normal::kDashpotMean);
     const Real limit = friction * fn;
     const Real speed = sqrt(squared(touch.slip));
     const Real coefficient = select(g * speed <= limit, g, Real(limit / speed));
