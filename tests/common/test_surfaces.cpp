@@ -916,7 +916,8 @@ TEST_SUITE("surfaces") {
             });
         if (on_right && !were_right && were_left && !on_left) {
           ++in_one_step;
-          CHECK(stretch < 1.1 * slip * sim.setting().time_step);
+          // The slip of one step, which changes by some part in it.
+          CHECK(stretch < 1.5 * slip * sim.setting().time_step);
           break;
         }
         were_left = on_left;
