@@ -1002,6 +1002,38 @@ TEST_SUITE("surfaces") {
     CHECK(lost == 0);
   }
 
+  TEST_CASE("near a corner of many flat triangles there is one contact, at any distance from it") {
+    Random random(18);
+    int none = 0, several = 0;
+    for (int k = 0; k < cases(3000, 100000); ++k) {
+      // Exact corners, and corners that each triangle has rounded for itself.
+      const double rounding = k % 2 == 0 ? 0 : 1e-8;
+      const int count = 4 + k % 6;
+      const Vec<3> middle(0.3, -0.2, 0);
+      const auto rounded_corner = [&](int c) -> Vec<3> {
+        const double angle = 2 * std::numbers::pi * c / count;
+        return middle + Vec<3>(std::cos(angle), std::sin(angle), 0) +
+               rounding * random_direction<3>(random);
+      };
+      std::vector<Wall<3>> walls;
+      for (int c = 0; c < count; ++c) {
+        walls.push_back(Wall<3>::plate("t", {middle + rounding * random_direction<3>(random),
+                                             rounded_corner(c), rounded_corner(c + 1)}));
+      }
+      walls = mixed(walls, random);
+      join_walls(walls);
+      const double away = 0.3 * std::pow(10, -9 * random.uniform());
+      const double angle = random.uniform(0, 2 * std::numbers::pi);
+      const double height = std::pow(10, -2 * random.uniform());
+      const Vec<3> x = middle + Vec<3>(away * std::cos(angle), away * std::sin(angle), height);
+      const auto found = contacts_at<3>(walls, x, 1.001 * height);
+      none += found.empty();
+      several += found.size() > 1;
+    }
+    CHECK(none == 0);
+    CHECK(several == 0);
+  }
+
   TEST_CASE("corners that agree to less than the seam make the same joints") {
     // The same corner with other last digits in each piece. Flat and convex, seen from outside: one
     // contact on every joint.
