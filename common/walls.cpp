@@ -193,38 +193,47 @@ struct Candidate {
   Feature feature;
 };
 
-/// The candidates that are contacts of the surface which their walls make together.
+/// Whether the candidate `own` of a list is a contact of the surface that their walls make together.
 ///
-/// First, an edge or corner that lies on another wall goes if that wall is nearer by more than a
-/// seam. Then, of feet on each other's walls, that with most to it stays: a face before an edge
-/// before a corner, the nearer before the further, the first before the last. (Two faces have one
-/// contact only if they lie on each other.) At least one stays, because each that goes leaves one
-/// that is nearer or comes first.
+/// From a foot that lies on another wall, to a seam, the way leads to the foot of that wall unless
+/// it is further away by more than a seam. A candidate from which every way leads back is a minimum
+/// of the distance. All those on its ways are the same minimum: that with most to it carries (a face
+/// before an edge before a corner), the nearer before the further, the first before the last.
+/// From a face a way leads only to another face that lies on it.
 template <int Dim>
-std::vector<Candidate<Dim>> contacts_among(std::vector<Candidate<Dim>> list, const Wall<Dim>* walls,
-                                           double seam) {
-  const auto lies_on = [&](const Candidate<Dim>& one, const Candidate<Dim>& other) {
+bool is_contact(const std::vector<Candidate<Dim>>& list, std::size_t own, const Wall<Dim>* walls,
+                double seam) {
+  const std::size_t n = list.size();
+  const auto leads_to = [&](const Candidate<Dim>& one, const Candidate<Dim>& other) {
+    if (other.distance > one.distance + seam) return false;
+    if (one.feature == Feature::face && other.feature != Feature::face) return false;
+    if (one.feature == Feature::face) return (one.foot - other.foot).norm() <= 2 * seam;
     return std::abs(walls[other.wall].foot(one.foot).distance) <= seam;
   };
-  const std::vector<Candidate<Dim>> all = list;
-  std::erase_if(list, [&](const Candidate<Dim>& one) {
-    return one.feature != Feature::face &&
-           std::any_of(all.begin(), all.end(), [&](const Candidate<Dim>& other) {
-             return other.distance < one.distance - seam && lies_on(one, other);
-           });
-  });
-  std::sort(list.begin(), list.end(), [](const Candidate<Dim>& a, const Candidate<Dim>& b) {
-    return std::tuple(b.feature, a.distance, a.wall) < std::tuple(a.feature, b.distance, b.wall);
-  });
-  std::vector<Candidate<Dim>> kept;
-  for (const Candidate<Dim>& one : list) {
-    const bool has_one = std::any_of(kept.begin(), kept.end(), [&](const Candidate<Dim>& other) {
-      if (one.feature == Feature::face) return (one.foot - other.foot).norm() <= 2 * seam;
-      return lies_on(one, other);
-    });
-    if (!has_one) kept.push_back(one);
+  const auto reached_from = [&](std::size_t start) {
+    std::vector<bool> reached(n);
+    std::vector<std::size_t> way{start};
+    reached[start] = true;
+    while (!way.empty()) {
+      const std::size_t at = way.back();
+      way.pop_back();
+      for (std::size_t k = 0; k < n; ++k) {
+        if (reached[k] || !leads_to(list[at], list[k])) continue;
+        reached[k] = true;
+        way.push_back(k);
+      }
+    }
+    return reached;
+  };
+  const std::vector<bool> minimum = reached_from(own);
+  const auto rank = [&](std::size_t k) {
+    return std::tuple(-static_cast<int>(list[k].feature), list[k].distance, list[k].wall);
+  };
+  for (std::size_t k = 0; k < n; ++k) {
+    if (k == own || !minimum[k]) continue;
+    if (rank(k) < rank(own) || !reached_from(k)[own]) return false;
   }
-  return kept;
+  return true;
 }
 
 }  // namespace
@@ -246,9 +255,7 @@ typename Wall<Dim>::Foot foot_on_surface(const Wall<Dim>* walls, int w, const Ve
   }
   if (list.empty()) return own;
   add(w, own);
-  for (const Candidate<Dim>& contact : contacts_among<Dim>(std::move(list), walls, seam)) {
-    if (contact.wall == w) return own;
-  }
+  if (is_contact<Dim>(list, list.size() - 1, walls, seam)) return own;
   return {std::numeric_limits<double>::max(), own.normal};
 }
 
