@@ -193,12 +193,13 @@ struct Candidate {
   Feature feature;
 };
 
-/// Whether the candidate `own` of a list is a contact of the surface that their walls make together.
+/// Whether the candidate `own` of a list is a contact of the surface that their walls
+/// make together.
 ///
 /// From a foot that lies on another wall, to a seam, the way leads to the foot of that wall unless
 /// it is further away by more than a seam. A candidate from which every way leads back is a minimum
-/// of the distance. All those on its ways are the same minimum: that with most to it carries (a face
-/// before an edge before a corner), the nearer before the further, the first before the last.
+/// of the distance. All those on its ways are the same minimum: that with most to it carries (a
+/// face before an edge before a corner), the nearer before the further, the first before the last.
 /// From a face a way leads only to another face that lies on it.
 template <int Dim>
 bool is_contact(const std::vector<Candidate<Dim>>& list, std::size_t own, const Wall<Dim>* walls,

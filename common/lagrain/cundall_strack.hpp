@@ -16,16 +16,10 @@ namespace lagrain {
 ///     f_t = -(kt xi + gt slip),  |f_t| <= mu f_n,
 ///     kt = ratio x normal stiffness,  gt = 2 zeta_t sqrt(kt m_eff)
 ///
-/// The slip of a step counts half before the force and half after it: the memory holds the stretch
-/// half a step ahead. A spring that holds then gives back what it took, and the force is of second
-/// order. In the first step of a contact the half before is what has passed since the grains met.
-///
 /// The spring is cut at the limit by itself, then its sum with the dashpot is cut again. So a large
 /// dashpot can neither load the spring nor change the impulse of a grazing impact, and friction
-/// never gives energy. The halves of a step balance where nothing is cut. A cut loses as long as
-/// the limit at most doubles within half a step, which it does once a contact has lasted a step.
-/// With X = kt xi inside the ball of radius mu f_n and P the point of the ball nearest to
-/// X + gt slip, the dashpot takes slip . (P - X) >= |P - X|^2 / gt.
+/// never gives energy: with X = kt xi inside the ball of radius mu f_n and P the point of the ball
+/// nearest to X + gt slip, the loss is slip . (P - X) >= |P - X|^2 / gt.
 ///
 /// Where the stiffness follows the overlap (Hertz), a spring whose contact is loaded keeps its
 /// force X, one that is unloaded keeps its stretch X / kt. Its energy X^2 / (2 kt) falls in both
@@ -48,7 +42,7 @@ struct CundallStrack {
   struct Memory {
     static constexpr bool kStiffness = !Normal::kConstantStiffness;  ///< whether it is remembered
     static constexpr int kReals = kStiffness ? Dim + 1 : Dim;        ///< one for each component
-    Vec<Dim, Real> stretch = Vec<Dim, Real>::Zero();                 ///< xi, half a step ahead [m]
+    Vec<Dim, Real> stretch = Vec<Dim, Real>::Zero();                 ///< xi [m]
     [[no_unique_address]] std::conditional_t<kStiffness, Real, NoStiffness> stiffness{};  ///< kt
     /// Component k [m], or the stiffness [N/m].
     /// @{
@@ -81,42 +75,29 @@ struct CundallStrack {
                               double time_step) const {
     using std::sqrt;
     Response<Dim, Real> response;
-    const auto [fn, dashpot_loss] = normal.push(touch, time_step);
+    const Onset<Real> onset(touch, Normal::kDashpotMean, time_step);
+    const auto [fn, dashpot_loss] = normal.push(touch, onset, time_step);
     response.dashpot_loss = dashpot_loss;
 
     // One number for a linear spring, one per contact for Hertz's; so are its root and inverse.
-    const auto kn = normal.stiffness_at(touch);
-    const auto kt = stiffness_ratio * kn;
+    const auto kt = stiffness_ratio * normal.stiffness_at(touch);
     const auto compliance = 1 / kt;
-    const Onset<Real> onset(touch, time_step);
-    const Real gt = 2 * tangential_damping_ratio * sqrt(kt) * sqrt(touch.effective_mass) *
-                    onset.weight(Normal::kDashpotMean);
-    const double half = 0.5 * time_step;
-    const Real limit = friction * fn;
-    const Real limit_ahead = friction * positive_part(Real(fn + kn * touch.closing * half));
-    const Vec<Dim, Real> ahead = half * touch.slip;
-    Vec<Dim, Real> before = ahead;
-    if (onset.any) before = select(onset.begins, onset.since, Real(half)) * touch.slip;
-
+    const Real gt =
+        2 * tangential_damping_ratio * sqrt(kt) * sqrt(touch.effective_mass) * onset.weight;
     Vec<Dim, Real> xi = turned_with<Dim, Real>(memory.stretch, touch, time_step);
     Real stored = 0.5 * kt * squared(xi);
     if constexpr (!Normal::kConstantStiffness) {
       stored = 0.5 * memory.stiffness * squared(xi);
       xi = smaller(Real(memory.stiffness * compliance), Real(1)) * xi;
     }
-    xi = cut<Dim, Real>(xi + before, limit * compliance);
-    const Vec<Dim, Real> ft = cut<Dim, Real>(-(kt * xi + gt * touch.slip), limit);
-    xi = cut<Dim, Real>(xi + ahead, limit_ahead * compliance);
+    xi = cut<Dim, Real>(xi + time_step * touch.slip, friction * fn * compliance);
+    const Vec<Dim, Real> ft = cut<Dim, Real>(-(kt * xi + gt * touch.slip), friction * fn);
     if (time_step > 0) {
       memory.stretch = xi;
       if constexpr (!Normal::kConstantStiffness) memory.stiffness = kt;
     }
     response.force = fn * touch.normal + ft;
-    Real loss = -dot(ft, touch.slip) * time_step - (0.5 * kt * squared(xi) - stored);
-    // A spring that begins between two steps errs as the one along the normal does, which is no
-    // work of friction.
-    if (onset.any) loss = select(onset.begins, positive_part(loss), loss);
-    response.friction_loss = loss;
+    response.friction_loss = -dot(ft, touch.slip) * time_step - (0.5 * kt * squared(xi) - stored);
     return response;
   }
 

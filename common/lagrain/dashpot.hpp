@@ -8,8 +8,7 @@
 
 namespace lagrain {
 
-/// Which contacts began within the time step that ends now, and since when they last. Few do, so
-/// what they need is asked for only where `any` says so.
+/// What is special in the first step of a contact. For all others these are constants.
 ///
 /// A force that an integrator evaluates acts for half a step back and half a step ahead. A spring
 /// begins with no force, so nothing is lost where it begins between two steps. A dashpot begins
@@ -18,25 +17,23 @@ namespace lagrain {
 /// order. (Orders of force laws: Danby et al., Comput. Chem. Eng. 58 (2013) 211.)
 template <class Real>
 struct Onset {
-  decltype(Real(0) < Real(0)) begins;  ///< in each lane; nowhere with a time step of 0
-  bool any;                            ///< in some lane
-  Real since;                          ///< how long the contact has lasted, where it begins [s]
-  double time_step;                    ///< [s]
+  /// Of a dashpot's force [-]: 1, but in the first step the part of a step for which the dashpot
+  /// has acted since the grains met, and acts in the half step ahead.
+  Real weight = Real(1);
+  /// Half a step where the contact begins: for so long the prediction of the velocity does not know
+  /// the dashpot [s].
+  Real slowing = Real(0);
 
-  /// @param step  the time step; 0 for those who only look [s]
+  /// @param mean       of the dashpot's coefficient between no overlap and this one, over the one
+  ///                   here
+  /// @param time_step  0 for those who only look [s]
   template <int Dim>
-  Onset(const Touch<Dim, Real>& touch, double step)
-      : begins(touch.overlap < touch.closing * step),
-        any(lagrain::any(begins)),
-        since(any ? Real(touch.overlap / touch.closing) : Real(0)),
-        time_step(step) {}
-
-  /// The weight [-] of a dashpot's force in this step: 1, but in the first one of a contact what
-  /// the dashpot has done since the grains met, and what it does in the half step ahead.
-  /// @param mean  of the dashpot's coefficient between no overlap and this one, over the one here
-  Real weight(double mean) const {
-    if (!any) return Real(1);
-    return select(begins, Real(0.5 + mean / time_step * since), Real(1));
+  Onset(const Touch<Dim, Real>& touch, double mean, double time_step) {
+    const auto begins = touch.overlap < touch.closing * time_step;
+    if (!any(begins)) return;
+    const Real since = touch.overlap / touch.closing;
+    weight = select(begins, Real(0.5 + mean / time_step * since), Real(1));
+    slowing = only_if(begins, Real(0.5 * time_step));
   }
 };
 
@@ -45,7 +42,6 @@ template <class Real>
 struct Dashpot {
   Real coefficient;  ///< force over velocity [N s/m]
   Real lag;          ///< by how much predicted velocities are too fast; see push_of [N/m]
-  double mean;       ///< of the coefficient since no overlap, over that here [-]
 };
 
 /// What a spring and a dashpot along the normal do in a step.
@@ -67,15 +63,12 @@ struct NormalPush {
 /// @param elastic  the spring's force [N]
 template <int Dim, class Real>
 NormalPush<Real> push_of(const Touch<Dim, Real>& touch, const Real& elastic,
-                         const Dashpot<Real>& dashpot, double time_step) {
-  const Onset<Real> onset(touch, time_step);
+                         const Dashpot<Real>& dashpot, const Onset<Real>& onset, double time_step) {
   const Real per_mass = Real(1) / (touch.effective_mass + time_step * time_step * dashpot.lag);
-  const Real damping = dashpot.coefficient * touch.effective_mass * per_mass;
-  const Real force =
-      positive_part(Real(elastic + damping * onset.weight(dashpot.mean) * touch.closing));
+  const Real damping = dashpot.coefficient * touch.effective_mass * per_mass * onset.weight;
+  const Real force = positive_part(Real(elastic + damping * touch.closing));
   const Real damped = force - elastic;
-  Real closing = touch.closing;
-  if (onset.any) closing -= only_if(onset.begins, Real(0.5 * time_step * per_mass * damped));
+  const Real closing = touch.closing - onset.slowing * per_mass * damped;
   return {force, damped * closing * time_step};
 }
 

@@ -66,13 +66,18 @@ struct Hertz {
     return coefficient(touch.effective_radius) * touch.overlap * sqrt(touch.overlap);
   }
   template <int Dim, class Real>
-  NormalPush<Real> push(const Touch<Dim, Real>& touch, double time_step) const {
+  NormalPush<Real> push(const Touch<Dim, Real>& touch, const Onset<Real>& onset,
+                        double time_step) const {
     using std::sqrt;
     const Real k = coefficient(touch.effective_radius);
     const Real root = sqrt(touch.overlap);
     const Real damping = std::sqrt(5.0) * damping_ratio * sqrt(touch.effective_mass * k * root);
-    return push_of<Dim, Real>(touch, k * touch.overlap * root,
-                              {damping, kLag * 1.5 * k * root, kDashpotMean}, time_step);
+    return push_of<Dim, Real>(touch, k * touch.overlap * root, {damping, kLag * 1.5 * k * root},
+                              onset, time_step);
+  }
+  template <int Dim, class Real>
+  NormalPush<Real> push(const Touch<Dim, Real>& touch, double time_step) const {
+    return push(touch, Onset<Real>(touch, kDashpotMean, time_step), time_step);
   }
   template <int Dim, class Real>
   Response<Dim, Real> respond(const Touch<Dim, Real>& touch, NoMemory&, double time_step) const {

@@ -50,11 +50,15 @@ struct LinearSpring {
     return stiffness * touch.overlap;
   }
   template <int Dim, class Real>
-  NormalPush<Real> push(const Touch<Dim, Real>& touch, double time_step) const {
+  NormalPush<Real> push(const Touch<Dim, Real>& touch, const Onset<Real>& onset,
+                        double time_step) const {
     using std::sqrt;
     const Real damping = 2 * damping_ratio * std::sqrt(stiffness) * sqrt(touch.effective_mass);
-    return push_of<Dim, Real>(touch, elastic_force(touch), {damping, lag(), kDashpotMean},
-                              time_step);
+    return push_of<Dim, Real>(touch, elastic_force(touch), {damping, lag()}, onset, time_step);
+  }
+  template <int Dim, class Real>
+  NormalPush<Real> push(const Touch<Dim, Real>& touch, double time_step) const {
+    return push(touch, Onset<Real>(touch, kDashpotMean, time_step), time_step);
   }
   template <int Dim, class Real>
   Response<Dim, Real> respond(const Touch<Dim, Real>& touch, NoMemory&, double time_step) const {

@@ -34,10 +34,10 @@ struct ViscousFriction {
   template <int Dim, class Real>
   Response<Dim, Real> respond(const Touch<Dim, Real>& touch, NoMemory&, double time_step) const {
     using std::sqrt;
-    const auto [fn, dashpot_loss] = normal.push(touch, time_step);
+    const Onset<Real> onset(touch, Normal::kDashpotMean, time_step);
+    const auto [fn, dashpot_loss] = normal.push(touch, onset, time_step);
     const Real g = 2 * tangential_damping_ratio * sqrt(normal.stiffness_at(touch)) *
-                   sqrt(touch.effective_mass) *
-                   Onset<Real>(touch, time_step).weight(Normal::kDashpotMean);
+                   sqrt(touch.effective_mass) * onset.weight;
     const Real limit = friction * fn;
     const Real speed = sqrt(squared(touch.slip));
     const Real coefficient = select(g * speed <= limit, g, Real(limit / speed));
