@@ -117,7 +117,7 @@ class HardCases {
         "the random walk that independent errors of its collisions make (dashed). (d) A disc shot "
         "at a pinned one, against its way in a step: it bounces while its overlap keeps to the "
         "limit, beyond it the run stops: for a deep overlap, or because the disc passed between "
-        "two steps (dashed: the share for whom no step ends in a deep overlap). (e) Elastic "
+        "two steps (dashed: the share for whom no step ends in a deep overlap before). (e) Elastic "
         "collisions by Hertz's law against the time step; beyond 1 the run was deceived about the "
         "speed of impact. (f) A crystal at rest against the same far from the origin. What to take "
         "from it: elastic friction for what must stand; contacts so stiff that no grain goes "
@@ -349,7 +349,7 @@ class HardCases {
         {.x = {.label = "way of the disc in a step [radii]", .log = true},
          .y = {.label = "share of the shots", .low = -0.05, .high = 1.45},
          .series = {theory(
-                        2, "", 3.4, 100, [](double w) { return 1 - 3.4 / w; }, true),
+                        2, "", 1.7, 100, [](double w) { return 1 - 1.7 / w; }, true),
                     bounced, refused, crossed},
          .legend = Corner::top_left}};
     save("fig18_fast", csv);

@@ -144,12 +144,12 @@ struct FastGrain : Outcome {
   double way = 0;  ///< in a step, in radii [-]
   int shots = 0;
   int bounced = 0;
-  int refused = 0;      ///< stopped by the run for a deep overlap
-  int crossed = 0;      ///< stopped because they passed through between two steps
-  int unseen = 0;       ///< came out on the far side, and the run went on
-  std::string refusal;  ///< what the run said of a deep overlap, the last time
-  std::string passage;  ///< what it said of a disc that passed through, the last time
-  double expected = 0;  ///< share that crosses: those for whom no step ends in a deep overlap [-]
+  int refused = 0;          ///< stopped by the run for a deep overlap
+  int crossed = 0;          ///< stopped because they passed through between two steps
+  int unseen = 0;           ///< came out on the far side, and the run went on
+  std::string refusal;      ///< what the run said of a deep overlap, the last time
+  std::string passage;      ///< what it said of a disc that passed through, the last time
+  double expected = 0;      ///< share that crosses: no step ends in a deep overlap before [-]
   double bounce_up_to = 0;  ///< the way in a step up to which a bounce keeps to the limit, in radii
 };
 FastGrain fast_grain(double way, int shots, const StopCheck& check_stop = {});

@@ -160,7 +160,11 @@ class ContactForces {
         return contact_foot<Dim>(scene.walls, pairs[k].wall, grain.position()).distance <
                grain.radius();
       };
-      const auto is_new = [&](std::size_t k) { return table.memory(k) == Memory{}; };
+      const auto is_new = [&](std::size_t k) {
+        bool empty = true;
+        for (int r = 0; r < Memory::kReals; ++r) empty = empty && table.memory_row(r)[k] == 0;
+        return empty;
+      };
       for (std::size_t first = 0, end = 0; first < pairs.size(); first = end) {
         while (end < pairs.size() && pairs[end].i == pairs[first].i) ++end;
         if (end - first < 2) continue;

@@ -360,7 +360,7 @@ class Reader {
       wall = read_plate(s, name);
     } else if (s.has(keys::kPoint) || s.has(keys::kNormal)) {
       wall = read_half_space(s, name);
-    } else if (s.has(keys::kFrom) || s.has(keys::kTo)) {
+    } else if (s.has(keys::kFrom) || s.has(keys::kTo) || s.has(keys::kAlong)) {
       wall = read_segment(s, name);
     } else {
       s.finish();
@@ -385,7 +385,9 @@ class Reader {
 
   Wall<Dim> read_segment(TomlTable& s, const std::string& name) {
     if constexpr (Dim == 3) {
-      s.fail(s.has(keys::kFrom) ? keys::kFrom : keys::kTo,
+      s.fail(s.has(keys::kFrom) ? keys::kFrom
+             : s.has(keys::kTo) ? keys::kTo
+                                : keys::kAlong,
              "in space a line has no thickness to touch; give the corners of a plate: corners = "
              "[[x, y, z], [x, y, z], [x, y, z], ...]");
     } else {

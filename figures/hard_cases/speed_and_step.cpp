@@ -41,8 +41,9 @@ FastGrain fast_grain(double way, int shots, const StopCheck& check_stop) {
       ++result.unseen;
     }
   }
-  // Nearer than 2 radii less the largest overlap the run stops: on as long a way to both sides.
-  const double guarded = 2 * (2 - scene.largest_overlap);
+  // Nearer than 2 radii less the largest overlap the run stops before; what ends a step further
+  // away and the next one beyond the middle has passed.
+  const double guarded = 2 - scene.largest_overlap;
   result.expected = std::max(0.0, 1 - guarded / way);
   const double mass = kDensity * grain_volume<2>(kRadius);
   result.bounce_up_to = scene.largest_overlap * std::sqrt(scene.law.stiffness / mass) * step;
@@ -109,7 +110,7 @@ StepSize collisions_at_step(double safe_steps, const StopCheck& check_stop) {
       } catch (const SimulationError& error) {
         result.stopped = error.what();
       }
-      audit.check(run->positions(), run->radii(), run->near_pairs());
+      audit.check(run->positions(), run->radii(), run->near_pairs(), run->pinned());
     }
     if (check_stop) check_stop();
     const double energy = run->ledger().kinetic / run->start().kinetic;

@@ -285,7 +285,7 @@ TEST_SUITE("hard cases that must stop") {
     const Shrinking box = shrinking_box(folder.path);
 
     says(box.stopped, "overlaps");
-    says(box.stopped, "limit 0.3");
+    says(box.stopped, "largest_overlap is 0.3");
     says(box.stopped, "last.csv");
     CHECK(box.audited > 0);
     CHECK(box.missed == 0);

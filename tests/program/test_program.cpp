@@ -221,7 +221,7 @@ TEST_SUITE("program") {
     CHECK(std::count(err.begin(), err.end(), '\n') == 1);
     CHECK(holds(err, "lagrain: t = "));
     CHECK(holds(err, "grain 0 overlaps grain 1"));
-    CHECK(holds(err, "smaller time step"));
+    CHECK(holds(err, "gentler start"));
     CHECK(fs::exists(place / "result/last.csv"));
     CHECK(fs::exists(place / "result/series.csv"));
     CHECK(fs::exists(place / "result/frames/0000.csv"));

@@ -263,7 +263,7 @@ TEST_SUITE("run") {
 
     CHECK(message.substr(0, 4) == "t = ");
     CHECK(message.find("grain 0 overlaps grain 1 by 0.") != std::string::npos);
-    CHECK(message.find("smaller time step") != std::string::npos);
+    CHECK(message.find("gentler start") != std::string::npos);
     CHECK(message.find("last.csv") != std::string::npos);
     CHECK(content(folder.path / "last.csv").substr(0, 6) == "id[-],");
     CHECK(content(folder.path / "last.csv").find("nan") == std::string::npos);

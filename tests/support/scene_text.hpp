@@ -61,18 +61,24 @@ inline std::string with(std::string text, const std::string& part, const std::st
 }
 
 /// A scene of discs as one of spheres: every place and direction gets a second component like its
-/// first, on the same line, and the layers of the heap are filled. In the plane, the text as it is.
+/// first, on the same line, a wall from the origin up becomes a plate, and the layers of the heap
+/// are filled. In the plane, the text as it is.
 template <int Dim>
 std::string in_space(std::string text) {
   if (Dim == 2) return text;
-  for (const std::string key : {"gravity", "velocity", "position", "point", "normal", "from", "to",
-                                "low", "high", "amplitude", "load"}) {
+  for (const std::string key :
+       {"gravity", "velocity", "position", "point", "normal", "low", "high", "amplitude", "load"}) {
     const std::string head = key + " = [";
     for (std::size_t at = 0; (at = text.find(head, at)) != std::string::npos;) {
       at += head.size();
       const std::string first = text.substr(at, text.find(',', at) - at);
       text.insert(at, first + ", ");
     }
+  }
+  const std::string upright = "from = [0, 0]\nto = [0, 1]\n";
+  if (text.find(upright) != std::string::npos) {
+    text = with(text, upright,
+                "point = [0, 0, 0]\ncorners = [[0, -1, 0], [0, 1, 0], [0, 1, 1], [0, -1, 1]]\n");
   }
   if (text.find("count = 12") != std::string::npos) text = with(text, "count = 12", "count = 48");
   return with(text, "dimension = 2", "dimension = 3");

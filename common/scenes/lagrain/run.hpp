@@ -89,6 +89,7 @@ class Run {
   double time_step() const { return scene_.time_step.seconds; }          ///< [s]
   const std::vector<int>& materials() const { return materials_; }       ///< N, of the scene's
   const std::vector<int>& groups() const { return groups_; }             ///< N, see Placement
+  const PinnedGrains& pinned() const { return pinned_; }                 ///< what nothing moves
   const Ledger& start() const { return start_; }                         ///< the ledger at time 0
   double energy_residual() const { return residual(ledger(), start_); }  ///< [J]
   const ContactAudit<Dim>& audit() const { return audit_; }  ///< what audits have found so far
