@@ -444,6 +444,28 @@ Diagram diagram_of(const Experiment& experiment, const std::vector<int>& steps,
   return diagram;
 }
 
+/// Two discs meet head-on; error of their speed afterwards, of what the restitution makes of it.
+Outcome head_on(double step, double restitution, const FigureOptions& options) {
+  constexpr double kSpeed = 1;  // of the one against the other [m/s]
+  const double contact =
+      LinearSpring::with_restitution(kK, restitution).contact_time(trial_mass<2>() / 2, kR / 2);
+  return over_phases([&](double phase) {
+    Scene<2> scene = empty_trial<2>();
+    scene.law.restitution = restitution;
+    const double one_step = detuned(step, phase);
+    const double gap = kSpeed * one_step * (1 + phase);
+    for (const double side : {-1.0, 1.0}) {
+      scene.grains.push_back({.position = {side * (kR + gap / 2), 0},
+                              .radius = kR,
+                              .velocity = {-side * kSpeed / 2, 0}});
+    }
+    scene.duration = gap / kSpeed + 1.5 * contact;
+    const Trial<2> trial = run_trial(scene, one_step, options);
+    const double apart = trial.run->velocities()(0, 1) - trial.run->velocities()(0, 0);
+    return Outcome{std::abs(apart / (restitution * kSpeed) - 1), trial.cost};
+  });
+}
+
 /// How many steps of velocity Verlet to a contact of two discs an impact needs for an error: the
 /// fewest, from the largest step that is allowed on.
 Table steps_needed(const FigureOptions& options) {
@@ -461,9 +483,7 @@ Table steps_needed(const FigureOptions& options) {
     int steps = fewest;
     for (const double error : kErrors) {
       const auto reached = [&] {
-        const Choice choice{IntegratorModel::velocity_verlet,
-                            wall_contact_time(restitution) / steps};
-        return bounce(choice, restitution, options).error <= error;
+        return head_on(contact / steps, restitution, options).error <= error;
       };
       while (!reached()) steps += std::max(1, steps / 20);
       row.push_back((steps == fewest ? "≤ " : "") + std::to_string(steps));
