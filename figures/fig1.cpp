@@ -28,7 +28,7 @@ double height_of(const Figure1& figure) {
 }  // namespace
 
 Figure1 make_figure1() {
-  Figure1 figure{.scene = settle(24, 0.004, 0.012, 0.09, 1), .contacts = {}};
+  Figure1 figure{.scene = settle(24, 0.004, 0.012, 0.09, 4), .contacts = {}};
   figure.contacts = find_contacts(figure.scene.discs);
   figure.hull = hull_edges(figure.contacts.triangulation);
   return figure;

@@ -370,7 +370,7 @@ class NearList {
     table.assign(std::move(keys), memories);
   }
 
-  /// Whether a grain and a wall are no pair of things that nothing moves.
+  /// Whether a force can move the grain or the wall.
   bool may_touch(int slot, const Wall<Dim>& wall) const { return wall.yields() || !pinned_[slot]; }
 
   Block& block_of(int slot) { return blocks_[index(slot / block_size_)]; }

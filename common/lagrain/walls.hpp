@@ -115,7 +115,7 @@ struct Piston {
 template <int Dim>
 struct Wall {
   std::string name;                   ///< for people, and for the files of a run
-  Vec<Dim> point = Vec<Dim>::Zero();  ///< now: on the plane, the segment's end, on the axis [m]
+  Vec<Dim> point = Vec<Dim>::Zero();  ///< now: on the plane, an end or corner, on the axis [m]
   /// The shape says what is solid.
   std::variant<HalfSpace<Dim>, FlatPiece<Dim>, Cylinder<Dim>> shape;
   /// The motion says how it moves.

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <type_traits>
 
 using namespace lagrain;
 using namespace lagrain::test;
@@ -176,10 +177,12 @@ TEST_SUITE("observe") {
     const double fine = ledger_error<C::Dim, typename C::Law>(scene, 8);
 
     // Losses are summed with the velocities that integrators predict, which the first force of a
-    // contact and the first slide make wrong by a step's change: order 1.1 to 1.8 was measured.
+    // contact and the first slide make wrong by a step's change: better than first order. Viscous
+    // friction falls more slowly, from a smaller error.
     CHECK(coarse < 0.03);
     CHECK(fine < 1e-3);
-    CHECK(observed_order(coarse, fine, 8) > 1.1);
+    CHECK(observed_order(coarse, fine, 8) >
+          (std::is_same_v<typename C::Law, ViscousSpring> ? 1.1 : 1.3));
   }
 
   TEST_CASE_TEMPLATE("so does the ledger of a shaken box, the walls' work included", C,

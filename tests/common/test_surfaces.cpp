@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -291,6 +292,28 @@ int minima_of_distance(const std::vector<std::vector<Vec<Dim>>>& pieces, double 
   }
   return static_cast<int>(minima.size());
 }
+
+/// How often contacts are those points of a surface where the distance has a minimum.
+struct Minima {
+  int wrong = 0;    ///< another number of contacts than of minima
+  int lost = 0;     ///< within reach of the surface, and no contact
+  int several = 0;  ///< more than one minimum
+  int clear = 0;    ///< places where samples tell the number of minima
+
+  template <int Dim>
+  void compare(const std::vector<std::vector<Vec<Dim>>>& pieces, double step,
+               const std::vector<Wall<Dim>>& walls, const Vec<Dim>& x, double radius) {
+    const int expected = minima_of_distance<Dim>(pieces, step, x, radius);
+    const int found = static_cast<int>(contacts_at<Dim>(walls, x, radius).size());
+    double distance = std::numeric_limits<double>::infinity();
+    for (const auto& wall : walls) distance = std::min(distance, wall.foot(x).distance);
+    lost += distance < radius && found == 0;
+    if (expected == kUnclear) return;
+    ++clear;
+    several += expected > 1;
+    wrong += found != expected;
+  }
+};
 
 /// Triangles round a middle, up and down: corners, edges, ridges and valleys.
 std::vector<Wall<3>> fan(const Vec<3>& middle, int count, Random& random, double roughness) {
@@ -932,7 +955,7 @@ TEST_SUITE("surfaces") {
 
   TEST_CASE("polylines are touched where the distance to them has a minimum") {
     Random random(12);
-    int wrong = 0, lost = 0, several = 0, clear = 0;
+    Minima tally;
     for (int k = 0; k < cases(60, 3000); ++k) {
       std::vector<Vec<2>> points;
       Vec<2> p(0, 0);
@@ -955,26 +978,18 @@ TEST_SUITE("surfaces") {
         const auto& near = pieces[static_cast<std::size_t>(random.below(6))];
         const Vec<2> x = near[static_cast<std::size_t>(random.below(kSamples))] +
                          random.uniform(0.02, 1.1) * radius * random_direction<2>(random);
-        const int expected = minima_of_distance<2>(pieces, 1.2 / kSamples, x, radius);
-        const int found = static_cast<int>(contacts_at<2>(walls, x, radius).size());
-        double distance = 1e300;
-        for (const auto& wall : walls) distance = std::min(distance, wall.foot(x).distance);
-        lost += distance < radius && found == 0;
-        if (expected == kUnclear) continue;
-        ++clear;
-        several += expected > 1;
-        wrong += found != expected;
+        tally.compare(pieces, 1.2 / kSamples, walls, x, radius);
       }
     }
-    CHECK(clear > 300);
-    CHECK(several > 50);
-    CHECK(wrong == 0);
-    CHECK(lost == 0);
+    CHECK(tally.clear > 300);
+    CHECK(tally.several > 50);
+    CHECK(tally.wrong == 0);
+    CHECK(tally.lost == 0);
   }
 
   TEST_CASE("triangles are touched where the distance to them has a minimum") {
     Random random(13);
-    int wrong = 0, lost = 0, several = 0, clear = 0;
+    Minima tally;
     for (int k = 0; k < cases(30, 1000); ++k) {
       auto walls = fan(0.2 * random_place(random, 1), 5 + k % 4, random, k % 2 ? 1.5 : 0.4);
       walls = mixed(walls, random);
@@ -985,21 +1000,13 @@ TEST_SUITE("surfaces") {
       for (int n = 0; n < 20; ++n) {
         const double radius = random.uniform(0.3, 0.8);
         const Vec<3> x = random_place(random, 0.9);
-        const int expected = minima_of_distance<3>(pieces, 2.5 / kSamples, x, radius);
-        const int found = static_cast<int>(contacts_at<3>(walls, x, radius).size());
-        double distance = 1e300;
-        for (const auto& wall : walls) distance = std::min(distance, wall.foot(x).distance);
-        lost += distance < radius && found == 0;
-        if (expected == kUnclear) continue;
-        ++clear;
-        several += expected > 1;
-        wrong += found != expected;
+        tally.compare(pieces, 2.5 / kSamples, walls, x, radius);
       }
     }
-    CHECK(clear > 40);
-    CHECK(several > 1);
-    CHECK(wrong == 0);
-    CHECK(lost == 0);
+    CHECK(tally.clear > 40);
+    CHECK(tally.several > 1);
+    CHECK(tally.wrong == 0);
+    CHECK(tally.lost == 0);
   }
 
   TEST_CASE("near a corner of many flat triangles there is one contact, at any distance from it") {

@@ -97,7 +97,7 @@ TEST_SUITE("figure 1") {
   TEST_CASE("the discs are at rest and the run missed nothing") {
     const Settled scene = make_figure1().scene;
 
-    CHECK(scene.kinetic_energy < 1e-11);
+    CHECK(scene.kinetic_energy < 1e-12);
     CHECK(scene.largest_overlap < 0.02);
     CHECK(scene.audited > 0);
     CHECK(scene.missed == 0);

@@ -21,12 +21,7 @@ using namespace lagrain::test;
 namespace {
 
 std::string message_of(const std::string& text) {
-  try {
-    place_grains(parse_scene<2>(text, "s.toml"));
-  } catch (const SceneError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return scene_error_of([&] { place_grains(parse_scene<2>(text, "s.toml")); });
 }
 
 template <int Dim>
@@ -90,12 +85,7 @@ Scene<Dim> crowd(const std::vector<std::pair<int, double>>& groups) {
 
 template <int Dim>
 std::string refusal_of(const Scene<Dim>& scene) {
-  try {
-    place_grains(scene);
-  } catch (const SceneError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return scene_error_of([&] { place_grains(scene); });
 }
 
 }  // namespace

@@ -35,12 +35,7 @@ radius = 0.1
 
 template <int Dim>
 std::string message_of(const std::string& text) {
-  try {
-    parse_scene<Dim>(text, "s.toml");
-  } catch (const SceneError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return scene_error_of([&] { parse_scene<Dim>(text, "s.toml"); });
 }
 
 std::string in_space_with(const std::string& keys) { return message_of<3>(kSpace + keys); }

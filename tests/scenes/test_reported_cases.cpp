@@ -60,12 +60,7 @@ std::unique_ptr<Run<Dim>> finished(const std::string& text, int threads = 1) {
 
 template <int Dim>
 std::string error_of(const std::string& text) {
-  try {
-    started<Dim>(text);
-  } catch (const SceneError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return scene_error_of([&] { started<Dim>(text); });
 }
 
 bool has(const std::string& text, const std::string& part) {

@@ -42,12 +42,7 @@ std::string trajectory(const std::string& text) {
 
 template <int Dim>
 std::string error_of(const std::string& text) {
-  try {
-    make_run(scene_of<Dim>(text));
-  } catch (const SceneError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return scene_error_of([&] { make_run(scene_of<Dim>(text)); });
 }
 
 /// Forty pairs of discs that meet head-on at 1 m/s each. Their gaps are spread evenly over a time

@@ -24,12 +24,7 @@ namespace {
 
 template <int Dim = 2>
 std::string message_of(const std::string& text) {
-  try {
-    parse_scene<Dim>(text, "s.toml");
-  } catch (const SceneError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return scene_error_of([&] { parse_scene<Dim>(text, "s.toml"); });
 }
 
 /// The message after one line of the heap is replaced.

@@ -3,6 +3,9 @@
 /// @file
 /// Small scenes, as text.
 
+#include <lagrain/check.hpp>
+#include <lagrain/scene.hpp>
+
 #include <stdexcept>
 #include <string>
 
@@ -82,6 +85,17 @@ std::string in_space(std::string text) {
   }
   if (text.find("count = 12") != std::string::npos) text = with(text, "count = 12", "count = 48");
   return with(text, "dimension = 2", "dimension = 3");
+}
+
+/// What the scene error says that an action throws; "accepted" if it throws none.
+template <class Action>
+std::string scene_error_of(Action&& action) {
+  try {
+    action();
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "accepted";
 }
 
 inline std::string without(const std::string& text, const std::string& line) {
