@@ -6,105 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 namespace lagrain {
-
-namespace {
-
-/// A vector along the normal of a polygon, as long as twice its area [m^2].
-Vec<3> twice_area(const std::vector<Vec<3>>& corners) {
-  Vec<3> sum = Vec<3>::Zero();
-  for (std::size_t k = 0; k + 1 < corners.size(); ++k) {
-    sum += (corners[k] - corners[0]).cross(corners[k + 1] - corners[0]);
-  }
-  return sum;
-}
-
-double size_of(const std::vector<Vec<3>>& corners) {
-  double size = 0;
-  for (const Vec<3>& corner : corners) size = std::max(size, (corner - corners[0]).norm());
-  return size;
-}
-
-}  // namespace
-
-std::string Plate::defect(const std::vector<Vec<3>>& corners) {
-  const std::size_t n = corners.size();
-  if (n < 3) return "a plate needs at least 3 corners";
-  const double size = size_of(corners);
-  const double little = kSeam * size;
-  const auto corner = [](std::size_t k) { return "corner " + std::to_string(k + 1) + " "; };
-  Vec<3> along = Vec<3>::Zero();
-  double width = 0;  // of the polygon across `along`
-  for (std::size_t k = 0; k < n; ++k) {
-    for (std::size_t j = 0; j < k; ++j) {
-      if ((corners[j] - corners[k]).norm() > little) continue;
-      return corner(j) + "and corner " + std::to_string(k + 1) + " are one point";
-    }
-    const Vec<3> arm = corners[k] - corners[0];
-    if (along.isZero(0)) along = arm.normalized();
-    width = std::max(width, along.cross(arm).norm());
-  }
-  if (width <= little) return "the corners lie on a line";
-  if (twice_area(corners).norm() <= little * size) return "the edges cross each other";
-  const Vec<3> normal = twice_area(corners).normalized();
-  for (std::size_t k = 0; k < n; ++k) {
-    if (std::abs((corners[k] - corners[0]).dot(normal)) <= little) continue;
-    return corner(k) +
-           "does not lie in a plane with the others; give a plate of three corners each";
-  }
-  for (std::size_t k = 0; k < n; ++k) {
-    const Vec<3> outwards = (corners[(k + 1) % n] - corners[k]).cross(normal).normalized();
-    for (std::size_t j = 0; j < n; ++j) {
-      if ((corners[j] - corners[k]).dot(outwards) <= little) continue;
-      return "the corners make no convex polygon in this order: " + corner(j) +
-             "lies outside of the edge from corner " + std::to_string(k + 1) +
-             "; give several plates";
-    }
-  }
-  return "";
-}
-
-Plate::Plate(std::vector<Vec<3>> corners) : corners_(std::move(corners)) {
-  LAGRAIN_EXPECTS(defect(corners_).empty(), defect(corners_));
-  normal_ = twice_area(corners_).normalized();
-  size_ = size_of(corners_);
-}
-
-Vec<3> Plate::nearest(const Vec<3>& x) const {
-  bool inside = true;
-  double least = std::numeric_limits<double>::infinity();  // squared distance to an edge
-  Vec<3> nearest = corners_[0];
-  for (std::size_t k = 0; k < corners_.size(); ++k) {
-    const Vec<3> edge = corners_[(k + 1) % corners_.size()] - corners_[k];
-    const Vec<3> from_corner = x - corners_[k];
-    if (edge.cross(normal_).dot(from_corner) < 0) continue;
-    inside = false;
-    const double t = std::clamp(from_corner.dot(edge) / edge.squaredNorm(), 0.0, 1.0);
-    const Vec<3> foot = corners_[k] + t * edge;
-    const double squared_distance = (x - foot).squaredNorm();
-    if (squared_distance >= least) continue;
-    least = squared_distance;
-    nearest = foot;
-  }
-  return inside ? x - (x - corners_[0]).dot(normal_) * normal_ : nearest;
-}
-
-Feature Plate::feature(const Vec<3>& foot, double seam) const {
-  int edges_at_hand = 0;
-  for (std::size_t k = 0; k < corners_.size(); ++k) {
-    const Vec<3>& from = corners_[k];
-    const Vec<3> edge = corners_[(k + 1) % corners_.size()] - from;
-    if ((foot - from).norm() <= seam) return Feature::corner;
-    if (edge.cross(normal_).dot(foot - from) > -seam * edge.norm()) ++edges_at_hand;
-  }
-  return edges_at_hand == 0 ? Feature::face : edges_at_hand == 1 ? Feature::edge : Feature::corner;
-}
 
 namespace {
 
@@ -116,58 +26,67 @@ constexpr double kSmall = 1e-3;
 /// each other.
 template <int Dim>
 double seam_of(const Wall<Dim>& a, const Wall<Dim>& b) {
-  const double sizes[] = {a.size(), b.size()};
-  const double larger = std::max(sizes[0], sizes[1]);
-  return kSeam * (std::isfinite(larger) ? larger : std::min(sizes[0], sizes[1]));
+  double largest = 0;
+  for (const Wall<Dim>* wall : {&a, &b}) {
+    if (const Sheet<Dim>* sheet = wall->pieces()) largest = std::max(largest, sheet->largest());
+  }
+  return kSeam * largest;
+}
+
+/// Whether a box comes within a seam of the surface of a wall without an end.
+template <int Dim>
+bool reaches(const Eigen::AlignedBox<double, Dim>& box, const Wall<Dim>& wall, double seam) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 1 << Dim; ++k) {
+    least = std::min(
+        least,
+        wall.foot(0,
+                  box.corner(static_cast<typename Eigen::AlignedBox<double, Dim>::CornerType>(k)))
+            .distance);
+  }
+  return least <= seam;
 }
 
 /// Whether the boxes around two walls overlap, or come within a seam of each other; a wall without
 /// an end has no box.
 template <int Dim>
 bool may_meet(const Wall<Dim>& a, const Wall<Dim>& b) {
-  if (!a.has_end() && !b.has_end()) return false;
+  if (!a.pieces() && !b.pieces()) return false;
   const double seam = seam_of(a, b);
-  if (!a.has_end() || !b.has_end()) {
-    const std::vector<Vec<Dim>> corners = (a.has_end() ? a : b).corners();
-    return std::any_of(corners.begin(), corners.end(), [&](const Vec<Dim>& corner) {
-      return std::abs((a.has_end() ? b : a).foot(corner).distance) <= seam;
-    });
-  }
-  const auto box_of = [](const Wall<Dim>& wall) {
-    Eigen::AlignedBox<double, Dim> box;
-    for (const Vec<Dim>& corner : wall.corners()) box.extend(corner);
-    return box;
-  };
-  return box_of(a).exteriorDistance(box_of(b)) <= seam;
+  if (!a.pieces()) return reaches(b.box(), a, seam);
+  if (!b.pieces()) return reaches(a.box(), b, seam);
+  return a.box().exteriorDistance(b.box()) <= seam;
 }
 
 }  // namespace
 
 template <int Dim>
 void join_walls(std::vector<Wall<Dim>>& walls) {
-  for (Wall<Dim>& wall : walls) wall.joined.clear();
-  for (std::size_t a = 0; a < walls.size(); ++a) {
-    for (std::size_t b = a + 1; b < walls.size(); ++b) {
+  const std::size_t n = walls.size();
+  std::vector<std::vector<std::size_t>> partners(n);
+  for (std::size_t a = 0; a < n; ++a) {
+    for (std::size_t b = a + 1; b < n; ++b) {
       const bool may_come_to_meet =
-          walls[a].has_end() && walls[b].has_end() && (walls[a].moves() || walls[b].moves());
+          walls[a].pieces() && walls[b].pieces() && (walls[a].moves() || walls[b].moves());
       if (!may_come_to_meet && !may_meet(walls[a], walls[b])) continue;
-      walls[a].joined.push_back(static_cast<int>(b));
-      walls[b].joined.push_back(static_cast<int>(a));
+      partners[a].push_back(b);
+      partners[b].push_back(a);
     }
+    walls[a].joined = !partners[a].empty() || walls[a].piece_count() > 1;
   }
   // Walls that hang together share one seam, so that each of them judges a joint alike.
-  std::vector<bool> seen(walls.size());
-  for (std::size_t first = 0; first < walls.size(); ++first) {
-    if (seen[first] || walls[first].joined.empty()) continue;
+  std::vector<bool> seen(n);
+  for (std::size_t first = 0; first < n; ++first) {
+    if (seen[first] || !walls[first].joined) continue;
     std::vector<std::size_t> surface{first};
     seen[first] = true;
     double smallest = std::numeric_limits<double>::infinity(), largest = 0;
     for (std::size_t k = 0; k < surface.size(); ++k) {
-      const Wall<Dim>& wall = walls[surface[k]];
-      smallest = std::min(smallest, wall.size());
-      if (wall.has_end()) largest = std::max(largest, wall.size());
-      for (const int o : wall.joined) {
-        const auto next = static_cast<std::size_t>(o);
+      if (const Sheet<Dim>* sheet = walls[surface[k]].pieces()) {
+        smallest = std::min(smallest, sheet->smallest());
+        largest = std::max(largest, sheet->largest());
+      }
+      for (const std::size_t next : partners[surface[k]]) {
         if (seen[next]) continue;
         seen[next] = true;
         surface.push_back(next);
@@ -184,23 +103,23 @@ template void join_walls<3>(std::vector<Wall<3>>&);
 
 namespace {
 
-/// The point of one wall that is nearest to a grain's centre.
+/// The point of one piece of a wall that is nearest to a grain's centre.
 template <int Dim>
 struct Candidate {
-  int wall;
+  int wall, piece;
   double distance;
   Vec<Dim> foot;
   Feature feature;
 };
 
-/// Whether the candidate `own` of a list is a contact of the surface that their walls
+/// Whether the candidate `own` of a list is a contact of the surface that their pieces
 /// make together.
 ///
-/// From a foot that lies on another wall, to a seam, the way leads to the foot of that wall unless
-/// it is further away by more than a seam. A candidate from which every way leads back is a minimum
-/// of the distance. All those on its ways are the same minimum: that with most to it carries (a
-/// face before an edge before a corner), the nearer before the further, the first before the last.
-/// From a face a way leads only to another face that lies on it.
+/// From a foot that lies on another piece, to a seam, the way leads to the foot of that piece
+/// unless it is further away by more than a seam. A candidate from which every way leads back is a
+/// minimum of the distance. All those on its ways are the same minimum: that with most to it
+/// carries (a face before an edge before a corner), the nearer before the further, the first before
+/// the last. From a face a way leads only to another face that lies on it.
 template <int Dim>
 bool is_contact(const std::vector<Candidate<Dim>>& list, std::size_t own, const Wall<Dim>* walls,
                 double seam) {
@@ -209,7 +128,7 @@ bool is_contact(const std::vector<Candidate<Dim>>& list, std::size_t own, const 
     if (other.distance > one.distance + seam) return false;
     if (one.feature == Feature::face && other.feature != Feature::face) return false;
     if (one.feature == Feature::face) return (one.foot - other.foot).norm() <= 2 * seam;
-    return std::abs(walls[other.wall].foot(one.foot).distance) <= seam;
+    return std::abs(walls[other.wall].foot(other.piece, one.foot).distance) <= seam;
   };
   const auto reached_from = [&](std::size_t start) {
     std::vector<bool> reached(n);
@@ -228,7 +147,8 @@ bool is_contact(const std::vector<Candidate<Dim>>& list, std::size_t own, const 
   };
   const std::vector<bool> minimum = reached_from(own);
   const auto rank = [&](std::size_t k) {
-    return std::tuple(-static_cast<int>(list[k].feature), list[k].distance, list[k].wall);
+    return std::tuple(-static_cast<int>(list[k].feature), list[k].distance, list[k].wall,
+                      list[k].piece);
   };
   for (std::size_t k = 0; k < n; ++k) {
     if (k == own || !minimum[k]) continue;
@@ -242,27 +162,157 @@ bool is_contact(const std::vector<Candidate<Dim>>& list, std::size_t own, const 
 namespace detail {
 
 template <int Dim>
-typename Wall<Dim>::Foot foot_on_surface(const Wall<Dim>* walls, int w, const Vec<Dim>& x) {
-  const auto own = walls[w].foot(x);
-  const double seam = walls[w].seam;
+typename Wall<Dim>::Foot foot_on_surface(const Wall<Dim>* walls, std::span<const WallPair> pairs,
+                                         std::size_t own_place, const Vec<Dim>& x, double reach) {
+  const WallPair& own_pair = pairs[own_place];
+  auto own = walls[own_pair.wall].foot(own_pair.piece, x);
+  if (own.distance > reach) return own;
+  const double seam = walls[own_pair.wall].seam;
   std::vector<Candidate<Dim>> list;
-  const auto add = [&](int wall, const typename Wall<Dim>::Foot& foot) {
+  const auto add = [&](const WallPair& pair, const typename Wall<Dim>::Foot& foot) {
     const Vec<Dim> point = x - foot.distance * foot.normal;
-    list.push_back({wall, foot.distance, point, walls[wall].feature(point, seam)});
+    list.push_back({pair.wall, pair.piece, foot.distance, point,
+                    walls[pair.wall].feature(pair.piece, point, seam)});
   };
-  for (const int o : walls[w].joined) {
-    const auto foot = walls[o].foot(x);
-    if (foot.distance <= own.distance + 2 * seam) add(o, foot);
+  const auto consider = [&](std::size_t k) {
+    if (!walls[pairs[k].wall].joined) return;
+    const auto foot = walls[pairs[k].wall].foot(pairs[k].piece, x);
+    if (foot.distance <= own.distance + 2 * seam) add(pairs[k], foot);
+  };
+  for (std::size_t k = own_place; k > 0 && pairs[k - 1].i == own_pair.i; --k) consider(k - 1);
+  for (std::size_t k = own_place + 1; k < pairs.size() && pairs[k].i == own_pair.i; ++k) {
+    consider(k);
   }
   if (list.empty()) return own;
-  add(w, own);
+  add(own_pair, own);
   if (is_contact<Dim>(list, list.size() - 1, walls, seam)) return own;
   return {std::numeric_limits<double>::max(), own.normal};
 }
 
-template Wall<2>::Foot foot_on_surface<2>(const Wall<2>*, int, const Vec<2>&);
-template Wall<3>::Foot foot_on_surface<3>(const Wall<3>*, int, const Vec<3>&);
+template Wall<2>::Foot foot_on_surface<2>(const Wall<2>*, std::span<const WallPair>, std::size_t,
+                                          const Vec<2>&, double);
+template Wall<3>::Foot foot_on_surface<3>(const Wall<3>*, std::span<const WallPair>, std::size_t,
+                                          const Vec<3>&, double);
 
 }  // namespace detail
+
+namespace {
+
+template <int Dim>
+std::string defect_of(const Path<Dim>& path) {
+  if (path.times.empty() || path.times.size() != path.shifts.size()) {
+    return "a path needs as many places as times, and at least one";
+  }
+  if (std::adjacent_find(path.times.begin(), path.times.end(), std::greater_equal<double>()) !=
+      path.times.end()) {
+    return "the times of a path increase";
+  }
+  return "";
+}
+
+/// How a wall turns, as numbers of one kind. The axis is of unit length.
+template <int Dim>
+struct Turning {
+  SpinVec<Dim> axis;
+  Vec<Dim> about;
+  double angle = 0, rate = 0;  // now [rad], [rad/s]
+};
+
+template <int Dim>
+Turning<Dim> turning_at(const Turn<Dim>& turn, double t) {
+  return {turn.axis, turn.about, turn.rate * (std::clamp(t, turn.start, turn.stop) - turn.start),
+          t >= turn.start && t < turn.stop ? turn.rate : 0};
+}
+template <int Dim>
+Turning<Dim> turning_at(const Swing<Dim>& swing, double t) {
+  const double omega = 2 * std::numbers::pi * swing.frequency;
+  const double phase = omega * (std::clamp(t, swing.start, swing.stop) - swing.start);
+  return {swing.axis, swing.about, swing.amplitude * std::sin(phase),
+          t >= swing.start && t < swing.stop ? swing.amplitude * omega * std::cos(phase) : 0};
+}
+template <int Dim>
+Turning<Dim> turning_at(const Upright&, double) {
+  return {SpinVec<Dim>::Zero(), Vec<Dim>::Zero()};
+}
+
+/// Whether turning about an axis through the wall's point leaves all of its pieces where they are.
+template <int Dim>
+bool is_round(const Sheet<Dim>& sheet, const SpinVec<Dim>& axis) {
+  if constexpr (Dim == 3) {
+    return std::ranges::all_of(sheet.pieces(), [&](const WallPiece<3>& piece) {
+      const auto* frustum = std::get_if<Frustum>(&piece);
+      return frustum && frustum->axis.cross(axis).norm() < kSeam &&
+             frustum->base.cross(axis).norm() < kSeam * frustum->size();
+    });
+  }
+  return false;
+}
+
+Eigen::Matrix2d rotation(const SpinVec<2>& axis, double angle) {
+  return Eigen::Rotation2Dd(axis[0] * angle).toRotationMatrix();
+}
+Eigen::Matrix3d rotation(const SpinVec<3>& axis, double angle) {
+  return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+}
+
+}  // namespace
+
+template <int Dim>
+std::string Wall<Dim>::defect() const {
+  if (const auto* path = std::get_if<Path<Dim>>(&motion)) {
+    if (const std::string why = defect_of(*path); !why.empty()) return why;
+  }
+  if (!turns()) return "";
+  if (yields()) return "a piston does not turn";
+  const Turning<Dim> now = std::visit([](const auto& m) { return turning_at<Dim>(m, 0); }, turning);
+  if (!(std::abs(now.axis.squaredNorm() - 1) < 1e-9)) return "it turns about no axis";
+  const std::string give = Dim == 2 ? "; give segments" : "; give plates";
+  if (const auto* plane = std::get_if<HalfSpace<Dim>>(&shape)) {
+    bool about_normal = false;
+    if constexpr (Dim == 3) about_normal = now.axis.cross(plane->normal).norm() < kSeam;
+    if (!about_normal) return "what has no end turns about its normal alone" + give;
+  }
+  if constexpr (Dim == 3) {
+    const auto* round = std::get_if<Cylinder<Dim>>(&shape);
+    if (round && !round->axis.isZero(0) && !(now.axis.cross(round->axis).norm() < kSeam)) {
+      return "what has no end turns about its axis alone" + give;
+    }
+  }
+  return "";
+}
+
+template <int Dim>
+void Wall<Dim>::turn_to(double t) {
+  const Vec<Dim> shift =
+      std::holds_alternative<Fixed>(motion) ? Vec<Dim>(Vec<Dim>::Zero()) : Vec<Dim>(point - home);
+  const Turning<Dim> now =
+      std::visit([&](const auto& m) { return turning_at<Dim>(m, t); }, turning);
+  angle = now.angle;
+  spin = now.rate * now.axis;
+  pivot = now.about + shift;
+  const Frame turned = rotation(now.axis, now.angle);
+  point = pivot + turned * (home - now.about);
+  turned_ = pieces() && !is_round<Dim>(*pieces(), now.axis);
+  if (turned_) frame_ = turned;
+}
+
+template <int Dim>
+std::vector<Vec<Dim>> Wall<Dim>::corners() const {
+  std::vector<Vec<Dim>> list;
+  if (!pieces()) return list;
+  for (const WallPiece<Dim>& piece : pieces()->pieces()) {
+    for (const Vec<Dim>& corner : std::visit([](const auto& p) { return p.corners(); }, piece)) {
+      list.push_back(turned_ ? Vec<Dim>(point + frame_ * corner) : Vec<Dim>(point + corner));
+    }
+  }
+  return list;
+}
+
+template std::string Wall<2>::defect() const;
+template std::string Wall<3>::defect() const;
+template void Wall<2>::turn_to(double);
+template void Wall<3>::turn_to(double);
+template std::vector<Vec<2>> Wall<2>::corners() const;
+template std::vector<Vec<3>> Wall<3>::corners() const;
 
 }  // namespace lagrain

@@ -83,7 +83,7 @@ void Box2dWorld::add_disc(const Run<2>& run, int i) {
 }
 
 void Box2dWorld::add_wall(const Run<2>& run, const Wall<2>& wall) {
-  LAGRAIN_EXPECTS(!wall.moves(), "wall \"" + wall.name + "\" moves");
+  LAGRAIN_EXPECTS(!wall.drives(), "wall \"" + wall.name + "\" moves");
   constexpr double kReach = 100, kTimes = 10;  // mean radii, and times the extent of the grains
   const Columns<2>& x = run.positions();
   Vec<2> from, to, normal;  // towards the grains
@@ -97,11 +97,14 @@ void Box2dWorld::add_wall(const Run<2>& run, const Wall<2>& wall) {
     from = foot - along;
     to = foot + along;
   } else {
-    const auto* segment = std::get_if<WallSegment>(&wall.shape);
-    LAGRAIN_EXPECTS(segment != nullptr, "wall \"" + wall.name + "\" is round");
-    from = wall.point;
-    to = wall.point + segment->along;
-    normal = Vec<2>(-segment->along.y(), segment->along.x()).normalized();
+    const std::vector<Vec<2>> ends = wall.corners();
+    LAGRAIN_EXPECTS(
+        ends.size() == 2 && std::holds_alternative<WallSegment>(wall.pieces()->piece(0)),
+        "wall \"" + wall.name + "\" is no straight piece");
+    from = ends[0];
+    to = ends[1];
+    const Vec<2> along = to - from;
+    normal = Vec<2>(-along.y(), along.x()).normalized();
     const Eigen::VectorXd sides = (x.colwise() - from).transpose() * normal;
     if (2 * (sides.array() < 0).count() > sides.size()) normal = -normal;
   }

@@ -53,10 +53,10 @@ class ContactForces {
     }
     kept_.resize(near.across_count());
     loads_.resize(static_cast<std::size_t>(threads));
-    wall_forces_.assign(blocks * walls.size(), Vec<Dim>::Zero());
+    wall_loads_.assign(blocks * walls.size(), {});
     wall_count_ = walls.size();
-    walls_meet_ = std::any_of(walls.begin(), walls.end(),
-                              [](const Wall<Dim>& wall) { return !wall.joined.empty(); });
+    walls_meet_ =
+        std::any_of(walls.begin(), walls.end(), [](const Wall<Dim>& wall) { return wall.joined; });
   }
 
   /// Keeps the forces of the pairs that block b has with later ones.
@@ -100,7 +100,7 @@ class ContactForces {
     }
     const double pair_seconds = watch.seconds();
     if (walls_meet_) hand_over_memories(scene, block.walls);
-    sums.walls = kernel_.walls(scene, block.walls, wall_forces_.data() + b * wall_count_);
+    sums.walls = kernel_.walls(scene, block.walls, wall_loads_.data() + b * wall_count_);
     if (sums.within.excess > 0) note_deepest(sums.deepest, block.within, scene);
     if (sums.walls.excess > 0) note_deepest(sums.deepest, block.walls, scene);
     sums.pair_seconds += pair_seconds;
@@ -120,11 +120,11 @@ class ContactForces {
     }
     return all;
   }
-  /// The force of the grains on a wall [N].
-  Vec<Dim> wall_force(std::size_t wall) const {
-    Vec<Dim> force = Vec<Dim>::Zero();
-    for (std::size_t b = 0; b < sums_.size(); ++b) force += wall_forces_[b * wall_count_ + wall];
-    return force;
+  /// What the grains do to a wall.
+  WallLoad<Dim> wall_load(std::size_t wall) const {
+    WallLoad<Dim> load;
+    for (std::size_t b = 0; b < sums_.size(); ++b) load += wall_loads_[b * wall_count_ + wall];
+    return load;
   }
   /// Known where an overlap has gone beyond the limit.
   DeepOverlap deepest() const {
@@ -157,7 +157,7 @@ class ContactForces {
       const auto& pairs = table.pairs();
       const auto touches = [&](std::size_t k) {
         const auto& grain = scene.grains[pairs[k].i];
-        return contact_foot<Dim>(scene.walls, pairs[k].wall, grain.position()).distance <
+        return contact_foot<Dim>(scene.walls, pairs, k, grain.position(), grain.radius()).distance <
                grain.radius();
       };
       const auto is_new = [&](std::size_t k) {
@@ -173,7 +173,7 @@ class ContactForces {
           // A way in a step is short against the grain, so the new foot is near the old one.
           const auto& grain = scene.grains[pairs[old].i];
           const auto arm = [&](std::size_t k) -> Vec<Dim> {
-            const auto foot = scene.walls[pairs[k].wall].foot(grain.position());
+            const auto foot = scene.walls[pairs[k].wall].foot(pairs[k].piece, grain.position());
             return -foot.distance * foot.normal;
           };
           std::size_t heir = end;
@@ -197,8 +197,8 @@ class ContactForces {
   std::vector<PairLoad<Dim, needs>> kept_;  // of the pairs across blocks
   std::vector<std::vector<Load>> loads_;    // of the block that each thread is at
   std::size_t wall_count_ = 0;
-  bool walls_meet_ = false;            // any of them
-  std::vector<Vec<Dim>> wall_forces_;  // by block, and in it by wall
+  bool walls_meet_ = false;                // any of them
+  std::vector<WallLoad<Dim>> wall_loads_;  // by block, and in it by wall
   bool measuring_ = false;
 };
 

@@ -40,16 +40,17 @@ class ContactKernel {
               PairLoad<Dim, needs>* out = nullptr) const {
     return pairs_(scene, table, listing, out);
   }
-  /// Contacts with walls: adds their forces to the loads, and the opposite to wall_forces, one for
+  /// Contacts with walls: adds their forces to the loads, and the opposite to wall_loads, one for
   /// each wall of the scene.
-  Tally walls(const Scene& scene, PairTable<WallPair, Memory>& table, Vec<Dim>* wall_forces) const {
-    return walls_(scene, table, wall_forces);
+  Tally walls(const Scene& scene, PairTable<WallPair, Memory>& table,
+              WallLoad<Dim>* wall_loads) const {
+    return walls_(scene, table, wall_loads);
   }
 
  private:
   using PairSweep = Tally (*)(const Scene&, PairTable<Pair, Memory>&, Listing,
                               PairLoad<Dim, needs>*);
-  using WallSweep = Tally (*)(const Scene&, PairTable<WallPair, Memory>&, Vec<Dim>*);
+  using WallSweep = Tally (*)(const Scene&, PairTable<WallPair, Memory>&, WallLoad<Dim>*);
   PairSweep pairs_;
   WallSweep walls_;
 };
@@ -74,10 +75,10 @@ struct Sweeps {
         });
   }
   static Tally walls(const Scene& scene, PairTable<WallPair, Memory>& table,
-                     Vec<Dim>* wall_forces) {
+                     WallLoad<Dim>* wall_loads) {
     return sweep_over<Dim, Law, Real, false>(
         scene, table.size(), [&](auto& sweep, std::size_t first, std::size_t partial) {
-          sweep.walls(table, first, partial, wall_forces);
+          sweep.walls(table, first, partial, wall_loads);
         });
   }
 };
@@ -103,20 +104,20 @@ struct Sweeps {
 #define LAGRAIN_FOR_AVX512
 #endif
 /// Defines the sweeps for one instruction set.
-#define LAGRAIN_COMPILED_SWEEPS(Name, Attributes, Real)                                           \
-  template <int Dim, class Law>                                                                   \
-  struct Name {                                                                                   \
-    using S = Sweeps<Dim, Law, Real>;                                                             \
-    using Memory = typename S::Memory;                                                            \
-    template <bool kOneLaw>                                                                       \
-    Attributes static Tally pairs(const typename S::Scene& scene, PairTable<Pair, Memory>& table, \
-                                  Listing listing, PairLoad<Dim, Law::needs>* out) {              \
-      return S::template pairs<kOneLaw>(scene, table, listing, out);                              \
-    }                                                                                             \
-    Attributes static Tally walls(const typename S::Scene& scene,                                 \
-                                  PairTable<WallPair, Memory>& table, Vec<Dim>* wall_forces) {    \
-      return S::walls(scene, table, wall_forces);                                                 \
-    }                                                                                             \
+#define LAGRAIN_COMPILED_SWEEPS(Name, Attributes, Real)                                            \
+  template <int Dim, class Law>                                                                    \
+  struct Name {                                                                                    \
+    using S = Sweeps<Dim, Law, Real>;                                                              \
+    using Memory = typename S::Memory;                                                             \
+    template <bool kOneLaw>                                                                        \
+    Attributes static Tally pairs(const typename S::Scene& scene, PairTable<Pair, Memory>& table,  \
+                                  Listing listing, PairLoad<Dim, Law::needs>* out) {               \
+      return S::template pairs<kOneLaw>(scene, table, listing, out);                               \
+    }                                                                                              \
+    Attributes static Tally walls(const typename S::Scene& scene,                                  \
+                                  PairTable<WallPair, Memory>& table, WallLoad<Dim>* wall_loads) { \
+      return S::walls(scene, table, wall_loads);                                                   \
+    }                                                                                              \
   }
 LAGRAIN_COMPILED_SWEEPS(ScalarSweeps, [[LAGRAIN_INLINED]], double);
 LAGRAIN_COMPILED_SWEEPS(Avx2Sweeps, LAGRAIN_FOR_AVX2, Lanes<4>);

@@ -327,21 +327,26 @@ struct Sweep {
 
   /// Contacts of a grain and a wall: the entries first, first + 1, ... of the table, one per lane.
   void walls(PairTable<WallPair, typename Law::template Memory<Dim>>& table, std::size_t first,
-             std::size_t partial, Vec<Dim>* wall_forces) {
+             std::size_t partial, WallLoad<Dim>* wall_loads) {
     Slots i;
     Real distance, mass;
     Vec<Dim, Real> normal, wall_velocity;
     for (std::size_t k = 0; k < kWidth; ++k) {
-      const auto [slot, w] = table.pairs()[first + k];
+      const auto [slot, w, piece] = table.pairs()[first + k];
       const int at = static_cast<int>(k);
       const Wall<Dim>& wall = scene.walls[w];
-      const auto foot = contact_foot<Dim>(scene.walls, w, scene.grains[slot].position());
+      const Vec<Dim> centre = scene.grains[slot].position();
+      const auto foot = contact_foot<Dim>(scene.walls, table.pairs(), first + k, centre,
+                                          scene.grains[slot].radius());
+      const Vec<Dim> surface_velocity =
+          wall.drives() ? wall.velocity_at(centre - foot.distance * foot.normal, foot.normal)
+                        : wall.velocity;
       i[k] = slot;
       set_lane(distance, at, foot.distance);
       set_lane(mass, at, scene.load(slot).at[Load::kMass]);
       for (int d = 0; d < Dim; ++d) {
         set_lane(normal[d], at, foot.normal[d]);
-        set_lane(wall_velocity[d], at, wall.velocity[d]);
+        set_lane(wall_velocity[d], at, surface_velocity[d]);
       }
     }
     const auto body = read_bodies<Real>(scene.grains, i);
@@ -364,8 +369,20 @@ struct Sweep {
     const LoadRows push(LoadColumns(response.force, turn));
     for (std::size_t k = 0; k < kWidth; ++k) {
       push.add_to(scene.load(i[k]), k);
-      wall_forces[table.pairs()[first + k].wall] -= Vec<Dim>::NullaryExpr(
-          [&](Eigen::Index d) { return lane(response.force[d], static_cast<int>(k)); });
+      const auto at = static_cast<int>(k);
+      const auto in_lane = [&](const auto& of_all) {
+        return Vec<Dim>::NullaryExpr([&](Eigen::Index d) { return lane(of_all[d], at); });
+      };
+      const int w = table.pairs()[first + k].wall;
+      const Wall<Dim>& wall = scene.walls[w];
+      wall_loads[w].force -= in_lane(response.force);
+      if (!wall.turns() && !wall.runs()) continue;
+      const Vec<Dim> force = in_lane(response.force), n = in_lane(normal);
+      const Vec<Dim> foot = scene.grains[i[k]].position() - lane(distance, at) * n;
+      if (wall.turns()) {
+        wall_loads[w].torque -= torque<double>(Vec<Dim>(foot - wall.pivot), force);
+      }
+      if (wall.runs()) wall_loads[w].power -= force.dot(wall.belt_along(n));
     }
   }
 };

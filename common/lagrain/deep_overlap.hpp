@@ -66,13 +66,16 @@ void note_deepest(DeepOverlap& deepest, const PairTable<P, Memory>& table,
                touch.closing,
                missing_stiffness(law, touch, scene.largest_overlap * smaller)};
   };
-  for (const P& pair : table.pairs()) {
+  for (std::size_t k = 0; k < table.size(); ++k) {
+    const P& pair = table.pairs()[k];
     const auto i = body(pair.i);
     if constexpr (std::is_same_v<P, WallPair>) {
       const Wall<Dim>& wall = scene.walls[pair.wall];
-      const auto [distance, normal] = contact_foot<Dim>(scene.walls, pair.wall, i.position);
+      const auto [distance, normal] =
+          contact_foot<Dim>(scene.walls, table.pairs(), k, i.position, i.radius);
+      const Vec<Dim> velocity = wall.velocity_at(i.position - distance * normal, normal);
       note(pair.i, pair.wall, true, scene.law_with_wall(pair.i, wall),
-           touch_of_wall(i, 1 / i.inverse_mass, distance, normal, wall.velocity), i.radius);
+           touch_of_wall(i, 1 / i.inverse_mass, distance, normal, velocity), i.radius);
     } else {
       const auto j = body(pair.j);
       note(pair.i, pair.j, false, scene.law(pair.i, pair.j), touch_of(i, j),

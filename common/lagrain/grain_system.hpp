@@ -16,6 +16,7 @@
 #include <lagrain/pinned_grains.hpp>
 #include <lagrain/records.hpp>
 #include <lagrain/setting.hpp>
+#include <lagrain/simulation_input.hpp>
 #include <lagrain/stopwatch.hpp>
 #include <lagrain/threads.hpp>
 #include <lagrain/walls.hpp>
@@ -119,12 +120,15 @@ class GrainSystem {
     const Grains<Dim, needs>& g = grains();
     for (const auto& block : near_.blocks()) {
       for (std::size_t k = 0; k < block.walls.size(); ++k) {
-        const WallPair pair{store_.number(block.walls.pairs()[k].i), block.walls.pairs()[k].wall};
+        WallPair pair = block.walls.pairs()[k];
+        pair.i = store_.number(pair.i);
         const Wall<Dim>& wall = walls_[index(pair.wall)];
+        const Vec<Dim> x = g.position.col(pair.i);
         const auto [distance, normal] =
-            contact_foot<Dim>(walls_.data(), pair.wall, g.position.col(pair.i));
+            contact_foot<Dim>(walls_.data(), block.walls.pairs(), k, x, g.radius[pair.i]);
+        const Vec<Dim> velocity = wall.velocity_at(x - distance * normal, normal);
         const auto [touching, touch] =
-            touch_of_wall(body(g, pair.i), g.mass[pair.i], distance, normal, wall.velocity);
+            touch_of_wall(body(g, pair.i), g.mass[pair.i], distance, normal, velocity);
         if (!touching) continue;
         Memory memory = block.walls.memory(k);
         f(pair, touch, laws_.with_wall(g.material, pair.i, wall.material).respond(touch, memory, 0),
@@ -147,6 +151,7 @@ class GrainSystem {
         neighbourhood_(std::move(neighbourhood)),
         forces_(setting_.instructions, store_.materials().empty()) {
     use_threads(setting_.threads);
+    expect_sound_walls(walls_);
     join_walls(walls_);
     for (Wall<Dim>& wall : walls_) wall.advance(0, 0);
     pin_grains();
@@ -174,6 +179,19 @@ class GrainSystem {
     near_.renumber(slot_of);
     pin_grains();
     if constexpr (requires { neighbourhood_.forget(); }) neighbourhood_.forget();
+  }
+
+  /// Brings the walls to time t [s], a step dt [s] after the last call. A wall that goes takes
+  /// along what the contacts with it have stored.
+  void advance_walls(double t, double dt) {
+    for (std::size_t w = 0; w < walls_.size(); ++w) {
+      if (!walls_[w].gone && t >= walls_[w].until) {
+        const double taken = elastic_energy_at(w);
+        walls_[w].work -= taken;
+        flow_.wall_work -= taken;
+      }
+      walls_[w].advance(t, dt);
+    }
   }
 
   /// Grains and walls have come to where they are at time t [s].
@@ -239,6 +257,20 @@ class GrainSystem {
     Body<Dim, needs> b{g.position.col(i), g.velocity.col(i), g.radius[i], g.inverse_mass[i], {}};
     if constexpr (needs.spin) b.omega = g.omega.col(i);
     return b;
+  }
+
+  /// What the contacts with a wall have stored [J].
+  double elastic_energy_at(std::size_t wall) {
+    store_.outdate();
+    double energy = 0;
+    for_each_wall_contact(
+        [&](WallPair pair, const Touch<Dim>& touch, const auto&, const Memory& memory) {
+          if (index(pair.wall) != wall) return;
+          energy += laws_.with_wall(grains().material, pair.i, walls_[wall].material)
+                        .elastic_energy(touch, memory);
+        });
+    store_.outdate();
+    return energy;
   }
 
   template <class F>

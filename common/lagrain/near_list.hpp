@@ -115,13 +115,14 @@ class NearList {
     return (x - shift - stay.centre).squaredNorm() <= stay.squared_margin;
   }
 
-  /// Whether all walls are within their margins. Walls are centred where they were at the
-  /// last refresh.
+  /// Whether all walls are within their margins, around where they were at the last refresh, and
+  /// those are there that were there then.
   /// @pre listed()
   bool walls_hold(const std::vector<Wall<Dim>>& all_walls, const Vec<Dim>& shift) const {
     for (std::size_t w = 0; w < all_walls.size(); ++w) {
-      const double moved = (all_walls[w].point - shift - wall_centre_[w]).norm();
-      if (!(moved <= wall_margin_[w] * kHair)) return false;
+      const double way = all_walls[w].way_since(listed_walls_[w].pose(), shift);
+      if (!(way <= wall_margin_[w] * kHair)) return false;
+      if (all_walls[w].gone != listed_walls_[w].gone) return false;
     }
     return true;
   }
@@ -195,10 +196,12 @@ class NearList {
     for (const int i : strays) {
       for (std::size_t w = 0; w < all_walls.size(); ++w) {
         if (!may_touch(i, all_walls[w])) continue;
-        // In the frame at the last refresh, where the wall was at its centre.
-        const Vec<Dim> x = stay_[index(i)].centre + all_walls[w].point - wall_centre_[w];
-        if (all_walls[w].foot(x).distance > radius[i] + margin_[i] + wall_margin_[w]) continue;
-        insert(block_of(i).walls, {i, static_cast<int>(w)});
+        // In the frame at the last refresh, and with the wall as it was then.
+        listed_walls_[w].for_each_near(stay_[index(i)].centre,
+                                       radius[i] + margin_[i] + wall_reach(w), near_pieces_,
+                                       [&](int piece) {
+                                         insert(block_of(i).walls, {i, static_cast<int>(w), piece});
+                                       });
       }
     }
     amended_ += static_cast<std::int64_t>(strays.size());
@@ -229,7 +232,8 @@ class NearList {
       }
       for (std::size_t k = 0; k < block.walls.size(); ++k) {
         const WallPair old = block.walls.pairs()[k];
-        wall_pairs.emplace_back(WallPair{slot[index(old.i)], old.wall}, block.walls.memory(k));
+        wall_pairs.emplace_back(WallPair{slot[index(old.i)], old.wall, old.piece},
+                                block.walls.memory(k));
       }
     }
     sort_by_pair(pairs);
@@ -259,7 +263,7 @@ class NearList {
   std::vector<std::string> audit(const Eigen::VectorXd& radius,
                                  const std::vector<Wall<Dim>>& all_walls) const {
     std::vector<std::string> defects;
-    if (wall_centre_.size() != all_walls.size() || wall_margin_.size() != all_walls.size() ||
+    if (listed_walls_.size() != all_walls.size() || wall_margin_.size() != all_walls.size() ||
         stay_.size() != index(size_) || margin_.size() != size_) {
       return {"the parts of the list do not fit together"};
     }
@@ -373,6 +377,10 @@ class NearList {
   /// Whether a force can move the grain or the wall.
   bool may_touch(int slot, const Wall<Dim>& wall) const { return wall.yields() || !pinned_[slot]; }
 
+  /// How far beyond a grain and its margin a piece of wall w is listed [m]: what a contact may be
+  /// left to is listed as well, see contact_foot.
+  double wall_reach(std::size_t w) const { return wall_margin_[w] + 2 * listed_walls_[w].seam; }
+
   Block& block_of(int slot) { return blocks_[index(slot / block_size_)]; }
 
   /// Puts found_ into the blocks' tables.
@@ -425,7 +433,8 @@ class NearList {
                                 return inside(pair.i) && pair.j >= block.end_slot && pair.j < size_;
                               }) &&
           std::ranges::all_of(block.walls.pairs(), [&](const WallPair& pair) {
-            return inside(pair.i) && pair.wall >= 0 && index(pair.wall) < wall_centre_.size();
+            return inside(pair.i) && pair.wall >= 0 && index(pair.wall) < listed_walls_.size() &&
+                   pair.piece >= 0 && pair.piece < listed_walls_[index(pair.wall)].piece_count();
           });
       if (!sound) defects.push_back("block " + std::to_string(b) + " is not sound");
       first = block.end_slot;
@@ -474,17 +483,20 @@ class NearList {
     for (std::size_t w = 0; w < all_walls.size(); ++w) {
       for (const Block& block : blocks_) {
         for (int i = block.first_slot; i < block.end_slot; ++i) {
-          // Where the wall was when it was centred.
-          const Vec<Dim> x = stay_[index(i)].centre + all_walls[w].point - wall_centre_[w];
+          if (!may_touch(i, all_walls[w]) || listed_walls_[w].gone) continue;
           const double margin = (margin_[i] + wall_margin_[w]) * kHair;
-          if (!(all_walls[w].foot(x).distance <= radius[i] + margin)) continue;
-          if (!may_touch(i, all_walls[w])) continue;
-          const auto& pairs = block.walls.pairs();
-          if (std::binary_search(pairs.begin(), pairs.end(), WallPair{i, static_cast<int>(w)})) {
-            continue;
+          for (int piece = 0; piece < all_walls[w].piece_count(); ++piece) {
+            // Where the wall was when it was listed.
+            const double distance = listed_walls_[w].foot(piece, stay_[index(i)].centre).distance;
+            if (!(distance <= radius[i] + margin)) continue;
+            const auto& pairs = block.walls.pairs();
+            if (std::binary_search(pairs.begin(), pairs.end(),
+                                   WallPair{i, static_cast<int>(w), piece})) {
+              continue;
+            }
+            defects.push_back("slot " + std::to_string(i) + " and wall " + all_walls[w].name +
+                              " are within reach and not listed");
           }
-          defects.push_back("slot " + std::to_string(i) + " and wall " + all_walls[w].name +
-                            " are within reach and not listed");
         }
       }
     }
@@ -493,21 +505,19 @@ class NearList {
   void list_walls(const Columns<Dim>& x, const Eigen::VectorXd& radius,
                   const std::vector<Wall<Dim>>& all_walls, double dt) {
     found_walls_.clear();
-    wall_centre_.resize(all_walls.size());
+    listed_walls_ = all_walls;
     wall_margin_.resize(all_walls.size());
     const double slack = size_ > 0 ? floor_ * radius.minCoeff() : 0;
     for (std::size_t w = 0; w < all_walls.size(); ++w) {
       const Wall<Dim>& wall = all_walls[w];
-      wall_centre_[w] = wall.point;
       // A fixed wall moves against the drift; without a drift it needs no margin.
       const bool still = !wall.moves() && drift_.isZero(0);
-      wall_margin_[w] =
-          still ? 0 : std::max(slack, kHorizon * dt * (wall.velocity - drift_).norm());
-      const double reach = wall_margin_[w];
+      wall_margin_[w] = still ? 0 : std::max(slack, kHorizon * dt * wall.fastest(drift_));
+      const double reach = wall_reach(w);
       wall.for_each_within(
           x, [&](int i) { return radius[i] + margin_[i] + reach; },
-          [&](int i) {
-            if (may_touch(i, wall)) found_walls_.push_back({i, static_cast<int>(w)});
+          [&](int i, int piece) {
+            if (may_touch(i, wall)) found_walls_.push_back({i, static_cast<int>(w), piece});
           });
     }
     std::sort(found_walls_.begin(), found_walls_.end());
@@ -539,8 +549,9 @@ class NearList {
   Vec<Dim> drift_ = Vec<Dim>::Zero();  // velocity of the frame [m/s]
   Eigen::VectorXd margin_;             // of each grain, around its centre [m]
   std::vector<Stay> stay_;
-  std::vector<Vec<Dim>> wall_centre_;
-  std::vector<double> wall_margin_;
+  std::vector<Wall<Dim>> listed_walls_;  // as they were at the last refresh
+  std::vector<double> wall_margin_;      // of each wall, around where it was then [m]
+  std::vector<int> near_pieces_;         // scratch
   std::int64_t paid_ = 0;  // for amendments since the last refresh, in the unit of the prices
   std::int64_t amended_ = 0;
   std::int64_t slow_ = 0;    // grains that left margins set by the floor since the last refresh

@@ -8,20 +8,12 @@
 
 #include <algorithm>
 #include <array>
-#include <compare>
 #include <cstddef>
 #include <functional>
 #include <utility>
 #include <vector>
 
 namespace lagrain {
-
-/// A grain and a wall near it.
-struct WallPair {
-  int i = 0;     ///< the grain, by slot or number
-  int wall = 0;  ///< place among the walls
-  auto operator<=>(const WallPair&) const = default;
-};
 
 /// Sorted pairs and, where the law remembers, one memory each. Memories survive a refresh by
 /// merging two sorted lists; where the law remembers nothing, nothing is stored and nothing merged.

@@ -96,7 +96,7 @@ class PassageWatch {
                          const std::vector<Wall<Dim>>& walls, double t, const Vec<Dim>& frame_way,
                          double dt) {
     if (!std::isfinite(slow_)) return;
-    const Passage passage = find(count, record, walls, t - since_, frame_way);
+    Passage passage = find(count, record, walls, t - since_, frame_way);
     for (auto& list : long_ways_) list.clear();
     remember(walls, t);
     if (passage.slot < 0) return;
@@ -132,8 +132,8 @@ class PassageWatch {
 
   void remember(const std::vector<Wall<Dim>>& walls, double t) {
     since_ = t;
-    wall_points_.resize(walls.size());
-    for (std::size_t w = 0; w < walls.size(); ++w) wall_points_[w] = walls[w].point;
+    wall_poses_.resize(walls.size());
+    for (std::size_t w = 0; w < walls.size(); ++w) wall_poses_[w] = walls[w].pose();
   }
 
   template <class RecordOf>
@@ -160,25 +160,24 @@ class PassageWatch {
     if (fast.size() <= kFew) {
       for (const LongWay& way : fast) {
         for (int other = 0; other < count; ++other) {
-          const Passage passage = look_at(way, other, start(other));
+          Passage passage = look_at(way, other, start(other));
           if (passage.slot >= 0) return passage;
         }
       }
     } else {
-      const Passage passage = find_among_many(fast, count, record, start, frame_way, look_at);
+      Passage passage = find_among_many(fast, count, record, start, frame_way, look_at);
       if (passage.slot >= 0) return passage;
     }
     for (const auto& [slot, from] : fast) {
       for (std::size_t w = 0; w < walls.size(); ++w) {
-        const Passage passage = through_wall(slot, record(slot), from, walls, w);
+        Passage passage = through_wall(slot, record(slot), from, walls, w);
         if (passage.slot >= 0) return passage;
       }
     }
     for (std::size_t w = 0; w < walls.size(); ++w) {
-      if (!walls[w].has_end()) continue;
-      if ((walls[w].point - wall_points_[w] - frame_way).norm() <= slow_) continue;
+      if (!walls[w].pieces() || walls[w].way_since(wall_poses_[w], frame_way) <= slow_) continue;
       for (int slot = 0; slot < count; ++slot) {
-        const Passage passage = through_wall(slot, record(slot), start(slot), walls, w);
+        Passage passage = through_wall(slot, record(slot), start(slot), walls, w);
         if (passage.slot >= 0) return passage;
       }
     }
@@ -208,8 +207,8 @@ class PassageWatch {
     ContactSearch<Dim> search;
     for (const auto [i, j] : search.find(middle, reach)) {
       if (!is_fast[static_cast<std::size_t>(i)] && !is_fast[static_cast<std::size_t>(j)]) continue;
-      const Passage passage = look_at(LongWay{i, from[static_cast<std::size_t>(i)]}, j,
-                                      from[static_cast<std::size_t>(j)]);
+      Passage passage = look_at(LongWay{i, from[static_cast<std::size_t>(i)]}, j,
+                                from[static_cast<std::size_t>(j)]);
       if (passage.slot >= 0) return passage;
     }
     return {};
@@ -241,15 +240,19 @@ class PassageWatch {
   Passage through_wall(int slot, const Record& grain, const Vec<Dim>& from,
                        const std::vector<Wall<Dim>>& walls, std::size_t w) const {
     const Wall<Dim>& wall = walls[w];
-    if (!wall.has_end() || (pinned(grain) && !wall.yields())) return {};
+    if (!wall.pieces() || (pinned(grain) && !wall.yields())) return {};
     // Seen from the wall, the grain ends where it is now.
     const Vec<Dim> to = grain.position();
-    const Vec<Dim> way = to - from - (wall.point - wall_points_[w]);
-    if (wall.foot(to).distance > grain.radius() + way.norm()) return {};
-    const double missed =
-        missed_overlap([&](double s) { return wall.foot(to - (1 - s) * way).distance; },
-                       grain.radius(), grain.radius());
-    if (!(missed > 0)) return {};
+    const Vec<Dim> way = to - wall.carried_along(wall_poses_[w], from);
+    bool crosses = false;
+    std::vector<int> found;
+    wall.for_each_near(to, grain.radius() + way.norm(), found, [&](int piece) {
+      crosses =
+          crosses ||
+          missed_overlap([&](double s) { return wall.foot(piece, to - (1 - s) * way).distance; },
+                         grain.radius(), grain.radius()) > 0;
+    });
+    if (!crosses) return {};
     return {slot, -1, static_cast<int>(w), halfway(grain, from), way.norm()};
   }
 
@@ -259,7 +262,7 @@ class PassageWatch {
 
   double slow_ = std::numeric_limits<double>::infinity();  // way in which nothing is missed [m]
   double since_ = 0;                                       // when it was looked last [s]
-  std::vector<Vec<Dim>> wall_points_;                      // where walls were then [m]
+  std::vector<WallPose<Dim>> wall_poses_;                  // where walls were then
   std::vector<std::vector<LongWay>> long_ways_;            // of each block
 };
 

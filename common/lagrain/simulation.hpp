@@ -80,7 +80,7 @@ class Simulation : public GrainSystem<Dim, Law, N> {
       if (store_.sort_is_due(steps_)) sort_grains();
       for (int k = 0; k < Motion::kEvaluations; ++k) {
         const double t = instant(steps_, k);
-        for (Wall<Dim>& wall : walls_) wall.advance(t, Motion::time_of(k) * setting_.time_step);
+        advance_walls(t, Motion::time_of(k) * setting_.time_step);
         if (!advanced) advance_trajectories(k, t);
         expect_no_passage(t);
         update_triangulation(t);
@@ -96,8 +96,8 @@ class Simulation : public GrainSystem<Dim, Law, N> {
   }
 
  private:
-  using System::expect_no_passage, System::for_each_block, System::sort_grains,
-      System::update_triangulation;
+  using System::advance_walls, System::expect_no_passage, System::for_each_block,
+      System::sort_grains, System::update_triangulation;
   using System::flow_, System::force_step_, System::forces_, System::laws_, System::measuring_,
       System::near_, System::setting_, System::steps_, System::store_, System::strays_,
       System::times_, System::walls_, System::watch_;
@@ -146,8 +146,12 @@ class Simulation : public GrainSystem<Dim, Law, N> {
     flow_.dashpot += tally.dashpot;
     flow_.friction += tally.friction;
     for (std::size_t w = 0; w < walls_.size(); ++w) {
-      walls_[w].force = forces_.wall_force(w);
-      flow_.wall_work -= walls_[w].force.dot(walls_[w].velocity) * force_step_;
+      const WallLoad<Dim> load = forces_.wall_load(w);
+      walls_[w].force = load.force;
+      walls_[w].torque = load.torque;
+      const double work = -walls_[w].power_of(load) * force_step_;
+      walls_[w].work += work;
+      flow_.wall_work += work;
     }
     if (tally.excess > 0) {
       report_deep_overlap(

@@ -48,6 +48,15 @@ inline void expect_safe_step(double time_step, const TimeScales& scales) {
   LAGRAIN_EXPECTS(time_step > 0 && time_step <= scales.safe_step, message.str());
 }
 
+/// @throws ContractError if a wall cannot move or turn as it should, see Wall::defect
+template <int Dim>
+void expect_sound_walls(const std::vector<Wall<Dim>>& walls) {
+  for (const Wall<Dim>& wall : walls) {
+    const std::string why = wall.defect();
+    LAGRAIN_EXPECTS(why.empty(), "wall " + wall.name + ": " + why);
+  }
+}
+
 /// @throws ContractError if an integrator for conservative scenes meets a law that takes energy, or
 /// a wall that moves
 template <Integrator Motion, int Dim, class Law>
@@ -60,7 +69,7 @@ void expect_integrable(const LawTable<Law>& laws, const std::vector<Wall<Dim>>& 
                     integrates + "restitution 1");
   }
   for (const Wall<Dim>& wall : walls) {
-    LAGRAIN_EXPECTS(!wall.moves(), integrates + "wall " + wall.name + " moves");
+    LAGRAIN_EXPECTS(!wall.drives(), integrates + "wall " + wall.name + " moves");
   }
 }
 

@@ -26,6 +26,14 @@ std::vector<SeriesColumn> series_columns(const Run<Dim>& run) {
   for (const Wall<Dim>& wall : run.walls()) {
     add(wall.name + ".f", "N");
     if (wall.moves()) add(wall.name + ".", "m");
+    if (wall.turns()) {
+      columns.push_back({wall.name + ".angle", "rad"});
+      for (int d = 0; d < kSpinDim<Dim>; ++d) {
+        columns.push_back(
+            {wall.name + ".torque" + (Dim == 2 ? "" : std::string(1, "xyz"[d])), "N m"});
+      }
+    }
+    if (wall.turns() || wall.runs()) columns.push_back({wall.name + ".work", "J"});
   }
   return columns;
 }
@@ -44,6 +52,11 @@ Sample sample_of(const Run<Dim>& run, const Ledger& now, const ContactStatistics
   for (const Wall<Dim>& wall : run.walls()) {
     add(wall.force);
     if (wall.moves()) add(wall.point);
+    if (wall.turns()) {
+      row.push_back(wall.angle);
+      row.insert(row.end(), wall.torque.begin(), wall.torque.end());
+    }
+    if (wall.turns() || wall.runs()) row.push_back(wall.work);
   }
   return row;
 }

@@ -26,6 +26,7 @@ inline constexpr Measure kLength{"a length", {1, 0, 0}};
 inline constexpr Measure kTime{"a time", {0, 0, 1}};
 inline constexpr Measure kMass{"a mass", {0, 1, 0}};
 inline constexpr Measure kFrequency{"a frequency", {0, 0, -1}};
+inline constexpr Measure kAngle{"an angle", {}};
 inline constexpr Measure kAngularVelocity{"an angular velocity", {0, 0, -1}};
 inline constexpr Measure kSpeed{"a speed", {1, 0, -1}};
 inline constexpr Measure kAcceleration{"an acceleration", {1, 0, -2}};
@@ -96,7 +97,20 @@ inline constexpr Key kFrom{"from", kLength};
 inline constexpr Key kTo{"to", kLength};
 inline constexpr Key kAlong{"along", kLength};
 inline constexpr Key kCorners{"corners", kLength};
+inline constexpr Key kPoints{"points", kLength};
+inline constexpr Key kLines{"lines", kLength};
+inline constexpr Key kClosed{"closed"};
+inline constexpr Key kThrough{"through", kLength};
+inline constexpr Key kPlates{"plates", kLength};
+inline constexpr Key kMesh{"mesh"};
+inline constexpr Key kScale{"scale", kNumber, Range::positive};
+inline constexpr Key kHeight{"height", kLength, Range::positive};
+inline constexpr Key kRadii{"radii", kLength, Range::not_negative};
 inline constexpr Key kOpen{"open"};
+inline constexpr Key kOpenings{"openings"};
+inline constexpr Key kSide{"side"};
+inline constexpr Key kBelt{"belt", kSpeed};
+inline constexpr Key kUntil{"until", kTime, Range::positive};
 
 inline constexpr Key kMotion{"motion"};
 inline constexpr Key kType{"type"};
@@ -106,6 +120,13 @@ inline constexpr Key kAmplitude{"amplitude", kLength};
 inline constexpr Key kFrequency{"frequency", detail::kFrequency, Range::positive};
 inline constexpr Key kPistonMass{"mass", kMass, Range::positive};
 inline constexpr Key kLoad{"load", kForce};
+inline constexpr Key kTimes{"times", kTime, Range::not_negative};
+inline constexpr Key kShifts{"shifts", kLength};
+
+inline constexpr Key kTurning{"turning"};
+inline constexpr Key kAbout{"about", kLength};
+inline constexpr Key kRate{"rate", kAngularVelocity};
+inline constexpr Key kAngle{"angle", detail::kAngle};
 
 inline constexpr Key kFramesEvery{"frames_every", kTime, Range::positive};
 inline constexpr Key kSeriesEvery{"series_every", kTime, Range::positive};
@@ -139,10 +160,15 @@ inline constexpr std::array kArrangementWords{Word<Arrangement>{"lattice", Arran
                                               Word<Arrangement>{"random", Arrangement::random}};
 
 /// How a wall can move; a wall without a motion is fixed.
-enum class MotionType { steady, shake, piston };
-inline constexpr std::array kMotionWords{Word<MotionType>{"steady", MotionType::steady},
-                                         Word<MotionType>{"shake", MotionType::shake},
-                                         Word<MotionType>{"piston", MotionType::piston}};
+enum class MotionType { steady, shake, path, piston };
+inline constexpr std::array kMotionWords{
+    Word<MotionType>{"steady", MotionType::steady}, Word<MotionType>{"shake", MotionType::shake},
+    Word<MotionType>{"path", MotionType::path}, Word<MotionType>{"piston", MotionType::piston}};
+
+/// How a wall can turn; a wall without it stays upright.
+enum class TurningType { steady, swing };
+inline constexpr std::array kTurningWords{Word<TurningType>{"steady", TurningType::steady},
+                                          Word<TurningType>{"swing", TurningType::swing}};
 
 template <class E, std::size_t N>
 constexpr std::string_view text_of(const std::array<Word<E>, N>& words, E value) {

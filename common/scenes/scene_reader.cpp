@@ -2,11 +2,13 @@
 #include <lagrain/scene.hpp>
 
 #include "scene_keys.hpp"
+#include "stl.hpp"
 #include "toml_table.hpp"
 
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <initializer_list>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
@@ -165,8 +167,9 @@ RadiusLaw read_radius(TomlTable& s) {
 template <int Dim>
 class Reader {
  public:
-  Reader(const toml::table& root, const std::string& name)
-      : file_{name, &scene_.lines}, top_(file_, root, "") {}
+  /// @param folder  from which the scene takes paths of files
+  Reader(const toml::table& root, const std::string& name, std::filesystem::path folder)
+      : file_{name, &scene_.lines}, folder_(std::move(folder)), top_(file_, root, "") {}
 
   Scene<Dim> read() {
     scene_.file = file_.name;
@@ -350,24 +353,44 @@ class Reader {
     scene_.grains.push_back(grain);
   }
 
+  /// Reads a wall. Its keys tell its shape.
   void read_wall(TomlTable& s, int index) {
     const std::string name = s.text(keys::kName, "wall " + std::to_string(index + 1));
     const int material = material_of(s, false);
-    Wall<Dim> wall;
-    if (s.has(keys::kRadius)) {
-      wall = read_cylinder(s, name);
-    } else if (s.has(keys::kCorners)) {
-      wall = read_plate(s, name);
-    } else if (s.has(keys::kPoint) || s.has(keys::kNormal)) {
-      wall = read_half_space(s, name);
-    } else if (s.has(keys::kFrom) || s.has(keys::kTo) || s.has(keys::kAlong)) {
-      wall = read_segment(s, name);
-    } else {
-      s.finish();
-      s.missing(keys::kPoint, std::string("point and normal, ") +
-                                  (Dim == 2 ? "from and to" : "corners") + ", or point and radius");
-    }
+    Wall<Dim> wall = read_shape(s, name);
+    if (s.has(keys::kTurning)) read_turning(s.table(keys::kTurning), wall);
     add_wall(s, std::move(wall), material);
+  }
+
+  Wall<Dim> read_shape(TomlTable& s, const std::string& name) {
+    if (s.has(keys::kRadii) || s.has(keys::kHeight)) return read_frustum(s, name);
+    if (s.has(keys::kRadius)) return read_cylinder(s, name);
+    if (s.has(keys::kCorners)) return read_plates(s, name, keys::kCorners);
+    if (s.has(keys::kPlates)) return read_plates(s, name, keys::kPlates);
+    if (s.has(keys::kMesh)) return read_mesh(s, name);
+    if (s.has(keys::kPoints)) return read_lines(s, name, keys::kPoints);
+    if (s.has(keys::kLines)) return read_lines(s, name, keys::kLines);
+    if (s.has(keys::kThrough)) return read_arc(s, name);
+    if (s.has(keys::kPoint) || s.has(keys::kNormal)) return read_half_space(s, name);
+    if (s.has(keys::kFrom) || s.has(keys::kTo) || s.has(keys::kAlong)) return read_segment(s, name);
+    s.finish();
+    s.missing(keys::kPoint,
+              Dim == 2 ? "a shape: point and normal, from and to, points, or point and radius"
+                       : "a shape: point and normal, corners, plates, mesh, point and radius, or "
+                         "point, axis and radii");
+  }
+
+  /// Refuses the keys of other shapes.
+  /// @param own  keys of this one
+  void refuse_others(TomlTable& s, std::initializer_list<Key> own, const std::string& why) {
+    for (const Key& key :
+         {keys::kPoint, keys::kNormal, keys::kFrom, keys::kTo, keys::kAlong, keys::kThrough,
+          keys::kPoints, keys::kLines, keys::kClosed, keys::kCorners, keys::kPlates, keys::kMesh,
+          keys::kScale, keys::kRadius, keys::kRadii, keys::kHeight, keys::kAxis}) {
+      const bool used =
+          std::any_of(own.begin(), own.end(), [&](const Key& k) { return k.name == key.name; });
+      if (!used) s.refuse(key, why + "; remove this line");
+    }
   }
 
   Wall<Dim> read_half_space(TomlTable& s, const std::string& name) {
@@ -378,6 +401,7 @@ class Reader {
       s.refuse(key, "either point and normal, or from and to");
     }
     s.refuse(keys::kAxis, "an axis belongs to a round wall, with point and radius");
+    refuse_others(s, {keys::kPoint, keys::kNormal}, "a half-space has point and normal");
     Wall<Dim> wall = Wall<Dim>::half_space(name, point, normal);
     if (is_unit(normal)) wall.shape = HalfSpace<Dim>{normal};
     return wall;
@@ -391,48 +415,134 @@ class Reader {
              "in space a line has no thickness to touch; give the corners of a plate: corners = "
              "[[x, y, z], [x, y, z], [x, y, z], ...]");
     } else {
-      const Vec<2> from = s.vector<2>(keys::kFrom);
       const bool given_along = s.has(keys::kAlong);
-      Wall<2> wall = Wall<2>::segment(name, from, from);
-      if (given_along) {
-        s.refuse(keys::kTo, "either to or along");
-        wall.shape = WallSegment{s.vector<2>(keys::kAlong)};
-      } else {
-        wall = Wall<2>::segment(name, from, s.vector<2>(keys::kTo));
-      }
-      if (std::get<WallSegment>(wall.shape).along.isZero(0)) {
+      if (given_along) s.refuse(keys::kTo, "either to or along");
+      refuse_others(s, {keys::kFrom, keys::kTo, keys::kAlong}, "a segment has from and to");
+      const Vec<2> from = s.vector<2>(keys::kFrom);
+      const Vec<2> along =
+          given_along ? s.vector<2>(keys::kAlong) : Vec<2>(s.vector<2>(keys::kTo) - from);
+      if (along.isZero(0)) {
         s.fail(given_along ? keys::kAlong : keys::kTo, "expected another point than from");
       }
-      return wall;
+      return Wall<2>::sheet(name, from, {WallSegment(Vec<2>::Zero(), along)});
     }
   }
 
-  Wall<Dim> read_plate(TomlTable& s, const std::string& name) {
-    if constexpr (Dim == 2) {
-      s.fail(keys::kCorners, "a plate is for dimension = 3; in the plane give from and to");
+  /// The point that the places of a wall of pieces are counted from.
+  Vec<Dim> read_origin(TomlTable& s) {
+    return s.has(keys::kPoint) ? s.vector<Dim>(keys::kPoint) : Vec<Dim>(Vec<Dim>::Zero());
+  }
+
+  Wall<Dim> read_arc(TomlTable& s, const std::string& name) {
+    if constexpr (Dim == 3) {
+      s.fail(keys::kThrough, "an arc is for dimension = 2; in space give radii or plates");
     } else {
-      for (const Key& key : {keys::kNormal, keys::kFrom, keys::kTo, keys::kAlong, keys::kAxis}) {
-        s.refuse(key, "a plate has corners alone; remove this line");
+      refuse_others(s, {keys::kPoint, keys::kFrom, keys::kThrough, keys::kTo},
+                    "an arc has from, through and to");
+      const Vec<2> from = s.vector<2>(keys::kFrom), through = s.vector<2>(keys::kThrough),
+                   to = s.vector<2>(keys::kTo);
+      const std::string defect = Arc::defect(from, through, to);
+      if (!defect.empty()) s.fail(keys::kThrough, defect);
+      return Wall<2>::sheet(name, read_origin(s), {Arc(from, through, to)});
+    }
+  }
+
+  /// Reads one polyline, or several.
+  Wall<Dim> read_lines(TomlTable& s, const std::string& name, const Key& key) {
+    if constexpr (Dim == 3) {
+      s.fail(key, "lines are for dimension = 2; in space give plates");
+    } else {
+      refuse_others(s, {keys::kPoint, keys::kClosed, key},
+                    "a wall of lines has " + std::string(key.name));
+      const bool one = key.name == keys::kPoints.name;
+      using Lines = std::vector<std::vector<Vec<2>>>;
+      auto lines = one ? Lines{s.vectors<2>(key)} : s.vector_lists<2>(key);
+      const bool closed = s.flag(keys::kClosed, false);
+      std::vector<WallPiece<2>> pieces;
+      for (auto& line : lines) {
+        if (closed) line.push_back(line.front());
+        if (line.size() < 2) s.fail(key, "a line needs at least two points");
+        for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+          if (line[k] == line[k + 1]) {
+            s.fail(key, "point " + std::to_string(k + 1) + " and the next are one");
+          }
+          pieces.push_back(WallSegment(line[k], line[k + 1]));
+        }
       }
-      const auto corners = s.vectors<3>(keys::kCorners);
-      const std::string defect = Plate::defect(corners);
-      if (!defect.empty()) s.fail(keys::kCorners, defect);
-      Wall<3> wall = Wall<3>::plate(name, corners);
-      if (s.has(keys::kPoint)) {
-        wall.point = wall.home = s.vector<3>(keys::kPoint);
-        wall.shape = Plate(corners);
+      return Wall<2>::sheet(name, read_origin(s), std::move(pieces));
+    }
+  }
+
+  /// Reads one plate, or several.
+  Wall<Dim> read_plates(TomlTable& s, const std::string& name, const Key& key) {
+    if constexpr (Dim == 2) {
+      s.fail(key, "a plate is for dimension = 3; in the plane give from and to");
+    } else {
+      refuse_others(s, {keys::kPoint, key}, "a plate has corners alone");
+      const bool one = key.name == keys::kCorners.name;
+      using Plates = std::vector<std::vector<Vec<3>>>;
+      const auto plates = one ? Plates{s.vectors<3>(key)} : s.vector_lists<3>(key);
+      std::vector<WallPiece<3>> pieces;
+      for (const auto& corners : plates) {
+        const std::string defect = Plate::defect(corners);
+        const std::string which = one ? "" : "plate " + std::to_string(pieces.size() + 1) + ": ";
+        if (!defect.empty()) s.fail(key, which + defect);
+        pieces.push_back(Plate(corners));
       }
-      return wall;
+      // A single plate is counted from its first corner, unless it says otherwise.
+      if (one && !s.has(keys::kPoint)) return Wall<3>::plate(name, plates.front());
+      return Wall<3>::sheet(name, read_origin(s), std::move(pieces));
+    }
+  }
+
+  Wall<Dim> read_mesh(TomlTable& s, const std::string& name) {
+    if constexpr (Dim == 2) {
+      s.fail(keys::kMesh, "a mesh is for dimension = 3; in the plane give points");
+    } else {
+      refuse_others(s, {keys::kPoint, keys::kMesh, keys::kScale}, "a mesh comes from its file");
+      const std::filesystem::path file = folder_ / s.text(keys::kMesh);
+      const double scale = s.number(keys::kScale, 1);
+      try {
+        return Wall<3>::sheet(name, read_origin(s), detail::read_stl(file, scale));
+      } catch (const std::invalid_argument& defect) {
+        s.fail(keys::kMesh, file.string() + ": " + defect.what());
+      }
+    }
+  }
+
+  Wall<Dim> read_frustum(TomlTable& s, const std::string& name) {
+    const Key& key = s.has(keys::kRadii) ? keys::kRadii : keys::kHeight;
+    if constexpr (Dim == 2) {
+      s.fail(key,
+             "it belongs to a round wall in space; in the plane give points, or an arc by "
+             "from, through and to");
+    } else {
+      refuse_others(s, {keys::kPoint, keys::kAxis, keys::kHeight, keys::kRadius, keys::kRadii},
+                    "a cone has point, axis, height and radii");
+      Frustum frustum{Vec<3>::Zero(), s.vector<3>(keys::kAxis)};
+      if (frustum.axis.isZero(0)) s.expected(keys::kAxis, "a direction");
+      if (!is_unit(frustum.axis)) frustum.axis.normalize();
+      frustum.height = s.number(keys::kHeight, 0);
+      if (s.has(keys::kRadii)) {
+        s.refuse(keys::kRadius, "either radius or radii");
+        const auto radii = s.numbers(keys::kRadii);
+        if (radii.size() != 2) s.expected(keys::kRadii, "[radius at point, radius at the end]");
+        frustum.low_radius = radii[0];
+        frustum.high_radius = radii[1];
+      } else {
+        frustum.low_radius = frustum.high_radius = s.number(keys::kRadius);
+      }
+      const std::string defect = frustum.defect();
+      if (!defect.empty()) s.fail(key, defect);
+      return Wall<3>::sheet(name, s.vector<3>(keys::kPoint), {frustum});
     }
   }
 
   Wall<Dim> read_cylinder(TomlTable& s, const std::string& name) {
     const double radius = s.number(keys::kRadius);
     const Vec<Dim> point = s.vector<Dim>(keys::kPoint);
-    for (const Key& key : {keys::kNormal, keys::kFrom, keys::kTo, keys::kAlong, keys::kCorners}) {
-      s.refuse(key, "a round wall has point" + std::string(Dim == 3 ? ", axis" : "") +
-                        " and radius; remove this line");
-    }
+    const std::string why =
+        "a round wall has point" + std::string(Dim == 3 ? ", axis" : "") + " and radius";
     Vec<Dim> axis = Vec<Dim>::Zero();
     if (Dim == 2) {
       s.refuse(keys::kAxis, "a circle has none; remove this line");
@@ -440,6 +550,7 @@ class Reader {
       axis = s.vector<Dim>(keys::kAxis);
       if (axis.isZero(0)) s.expected(keys::kAxis, "a direction");
     }
+    refuse_others(s, {keys::kPoint, keys::kAxis, keys::kRadius}, why);
     Wall<Dim> wall = Wall<Dim>::cylinder(name, point, axis, radius);
     if (is_unit(axis)) wall.shape = Cylinder<Dim>{radius, axis};
     return wall;
@@ -458,12 +569,22 @@ class Reader {
     if (Dim == 3) sides.insert(sides.end(), {"front", "back"});
     sides.insert(sides.end(), {"bottom", "top"});
     const std::vector<std::string> open = open_sides(s, sides);
+    const auto openings = read_openings(s, sides, open, low, high);
     for (std::size_t k = 0; k < sides.size(); ++k) {
       if (std::find(open.begin(), open.end(), sides[k]) != open.end()) continue;
+      const auto across = static_cast<Eigen::Index>(k / 2);
       Vec<Dim> inwards = Vec<Dim>::Zero();
-      inwards[static_cast<Eigen::Index>(k / 2)] = k % 2 == 0 ? 1 : -1;
+      inwards[across] = k % 2 == 0 ? 1 : -1;
       const std::string name = prefix.empty() ? sides[k] : prefix + " " + sides[k];
-      add_wall(s, Wall<Dim>::half_space(name, k % 2 == 0 ? low : high, inwards), material);
+      const auto opening = openings.find(sides[k]);
+      Box face(low, high);
+      (k % 2 == 0 ? face.max() : face.min())[across] = (k % 2 == 0 ? low : high)[across];
+      add_wall(s,
+               opening == openings.end()
+                   ? Wall<Dim>::half_space(name, k % 2 == 0 ? low : high, inwards)
+                   : Wall<Dim>::sheet(name, Vec<Dim>::Zero(),
+                                      pieces_around(face, opening->second, across)),
+               material);
       if (std::holds_alternative<Piston<Dim>>(scene_.walls.back().motion)) {
         s.fail(keys::kMotion,
                "each side would move for itself; leave the side open and give the piston as a "
@@ -472,15 +593,84 @@ class Reader {
     }
   }
 
+  using Box = Eigen::AlignedBox<double, Dim>;
+
+  /// The openings of a box: side -> box that reaches through it.
+  std::map<std::string, Box> read_openings(TomlTable& s, const std::vector<std::string>& sides,
+                                           const std::vector<std::string>& open,
+                                           const Vec<Dim>& low, const Vec<Dim>& high) {
+    std::map<std::string, Box> openings;
+    s.for_each(keys::kOpenings, [&](TomlTable& o, int) {
+      const auto k = static_cast<std::size_t>(std::distance(
+          sides.begin(), std::find(sides.begin(), sides.end(),
+                                   side_named(o, o.text(keys::kSide), keys::kSide, sides))));
+      const std::string& side = sides[k];
+      if (std::find(open.begin(), open.end(), side) != open.end()) {
+        o.fail(keys::kSide, "side \"" + side + "\" is left out as a whole; remove this opening");
+      }
+      if (openings.contains(side)) {
+        o.fail(keys::kSide, "a second opening in \"" + side + "\"; give its pieces as [[wall]]");
+      }
+      const auto from = o.template vector<Dim - 1>(keys::kLow);
+      const auto to = o.template vector<Dim - 1>(keys::kHigh);
+      Box opening(low, high);
+      for (int d = 0, e = 0; d < Dim; ++d) {
+        if (d == static_cast<int>(k / 2)) continue;
+        opening.min()[d] = from[e];
+        opening.max()[d] = to[e++];
+      }
+      if (!(opening.min().array() < opening.max().array()).all() ||
+          !Box(low, high).contains(opening)) {
+        o.fail(keys::kLow, "expected low below high, both on the side");
+      }
+      openings.emplace(side, opening);
+    });
+    return openings;
+  }
+
+  /// What is left of a side of a box, flat across one direction, around an opening.
+  static std::vector<WallPiece<Dim>> pieces_around(const Box& face, const Box& opening,
+                                                   Eigen::Index across) {
+    std::vector<WallPiece<Dim>> pieces;
+    const auto add = [&](const Box& part) {
+      if constexpr (Dim == 2) {
+        if (part.min() != part.max()) pieces.push_back(WallSegment(part.min(), part.max()));
+      } else {
+        const Eigen::Index u = (across + 1) % 3, v = (across + 2) % 3;
+        if (!(part.min()[u] < part.max()[u] && part.min()[v] < part.max()[v])) return;
+        std::vector<Vec<3>> corners(4, part.min());
+        corners[1][u] = corners[2][u] = part.max()[u];
+        corners[2][v] = corners[3][v] = part.max()[v];
+        pieces.push_back(Plate(corners));
+      }
+    };
+    // Direction by direction, a part before the opening, one behind it, and the rest beside it.
+    Box rest = face;
+    for (Eigen::Index d = 0; d < Dim; ++d) {
+      if (d == across) continue;
+      Box before = rest, behind = rest;
+      before.max()[d] = opening.min()[d];
+      behind.min()[d] = opening.max()[d];
+      add(before);
+      add(behind);
+      rest.min()[d] = opening.min()[d];
+      rest.max()[d] = opening.max()[d];
+    }
+    return pieces;
+  }
+
+  std::string side_named(TomlTable& s, const std::string& side, const Key& key,
+                         const std::vector<std::string>& sides) {
+    if (std::find(sides.begin(), sides.end(), side) != sides.end()) return side;
+    s.fail(key, "no side \"" + side + "\"" + suggestion(side, sides) +
+                    "; expected some of left, right, " + (Dim == 3 ? "front, back, " : "") +
+                    "bottom, top");
+  }
+
   std::vector<std::string> open_sides(TomlTable& s, const std::vector<std::string>& sides) {
     if (!s.has(keys::kOpen)) return {};
     auto open = s.texts(keys::kOpen, "a list of sides", "a side");
-    for (const std::string& side : open) {
-      if (std::find(sides.begin(), sides.end(), side) != sides.end()) continue;
-      s.fail(keys::kOpen, "no side \"" + side + "\"" + suggestion(side, sides) +
-                              "; expected some of left, right, " +
-                              (Dim == 3 ? "front, back, " : "") + "bottom, top");
-    }
+    for (const std::string& side : open) side_named(s, side, keys::kOpen, sides);
     return open;
   }
 
@@ -490,6 +680,17 @@ class Reader {
     }
     wall.material = material;
     if (s.has(keys::kMotion)) read_motion(s.table(keys::kMotion), wall);
+    if (s.has(keys::kBelt)) wall.belt = s.vector<Dim>(keys::kBelt);
+    wall.until = s.number(keys::kUntil, wall.until);
+    if (scene_.integrator == IntegratorModel::fourth_order && wall.drives()) {
+      s.fail(wall.turns()  ? keys::kTurning
+             : wall.runs() ? keys::kBelt
+                           : keys::kMotion,
+             "integrator = \"fourth order\" needs walls at rest; remove this motion");
+    }
+    if (const std::string defect = wall.defect(); !defect.empty()) {
+      s.fail(wall.turns() ? keys::kTurning : keys::kMotion, defect);
+    }
     scene_.walls.push_back(std::move(wall));
   }
 
@@ -498,9 +699,6 @@ class Reader {
 
   void read_motion(TomlTable s, Wall<Dim>& wall) {
     const auto type = s.word<detail::MotionType>(keys::kType, detail::kMotionWords);
-    if (scene_.integrator == IntegratorModel::fourth_order) {
-      s.fail(keys::kType, "integrator = \"fourth order\" needs walls at rest; remove this motion");
-    }
     switch (type) {
       case detail::MotionType::steady: {
         Steady<Dim> m;
@@ -517,6 +715,11 @@ class Reader {
         wall.motion = m;
         break;
       }
+      case detail::MotionType::path: {
+        const Path<Dim> m{s.numbers(keys::kTimes), s.vectors<Dim>(keys::kShifts)};
+        wall.motion = m;
+        break;
+      }
       case detail::MotionType::piston: {
         Piston<Dim> m{};
         m.mass = s.number(keys::kPistonMass);
@@ -527,6 +730,29 @@ class Reader {
         wall.motion = m;
         break;
       }
+    }
+    s.finish();
+  }
+
+  void read_turning(TomlTable s, Wall<Dim>& wall) {
+    const auto type = s.word<detail::TurningType>(keys::kType, detail::kTurningWords);
+    SpinVec<Dim> axis = SpinVec<Dim>::Ones();
+    if constexpr (Dim == 2) {
+      s.refuse(keys::kAxis, "in the plane all turns about the same; remove this line");
+    } else {
+      axis = s.vector<3>(keys::kAxis);
+      if (axis.isZero(0)) s.expected(keys::kAxis, "a direction");
+      if (!is_unit(axis)) axis.normalize();
+    }
+    const Vec<Dim> about = s.has(keys::kAbout) ? s.vector<Dim>(keys::kAbout) : wall.home;
+    if (type == detail::TurningType::steady) {
+      Turn<Dim> turn{axis, s.number(keys::kRate), about};
+      read_times(s, turn);
+      wall.turning = turn;
+    } else {
+      Swing<Dim> swing{axis, s.number(keys::kAngle), s.number(keys::kFrequency), about};
+      read_times(s, swing);
+      wall.turning = swing;
     }
     s.finish();
   }
@@ -550,6 +776,7 @@ class Reader {
 
   Scene<Dim> scene_;
   TomlFile file_;
+  std::filesystem::path folder_;
   TomlTable top_;
 };
 
@@ -586,19 +813,25 @@ int scene_dimension(const std::filesystem::path& file) {
 }
 
 template <int Dim>
-Scene<Dim> parse_scene(std::string_view text, const std::string& name) {
+Scene<Dim> parse(std::string_view text, const std::string& name,
+                 const std::filesystem::path& folder) {
   const toml::table root = detail::parse_toml(text, name);
   if (const int found = dimension_of(root, name); found != Dim) {
     const std::string key(keys::kDimension.name);
     TomlFile{name, nullptr}.fail(
         *root.get(key), key, "expected " + std::to_string(Dim) + ", got " + std::to_string(found));
   }
-  return Reader<Dim>(root, name).read();
+  return Reader<Dim>(root, name, folder).read();
+}
+
+template <int Dim>
+Scene<Dim> parse_scene(std::string_view text, const std::string& name) {
+  return parse<Dim>(text, name, "");
 }
 
 template <int Dim>
 Scene<Dim> read_scene(const std::filesystem::path& file) {
-  return parse_scene<Dim>(whole_file(file), called(file));
+  return parse<Dim>(whole_file(file), called(file), file.parent_path());
 }
 
 template Scene<2> read_scene<2>(const std::filesystem::path&);

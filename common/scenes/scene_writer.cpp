@@ -55,6 +55,13 @@ requires(!std::is_convertible_v<V, std::string_view> && !std::is_arithmetic_v<V>
   return text += ']';
 }
 
+template <int N>
+std::string in_toml(const std::vector<Eigen::Matrix<double, N, 1>>& points) {
+  std::string text;
+  for (const auto& p : points) text += (text.empty() ? "" : ", ") + in_toml(p);
+  return "[" + text + "]";
+}
+
 /// The text of a scene, line by line.
 class Lines {
  public:
@@ -220,22 +227,52 @@ class Writer {
                             if (Dim == 3) out_.add(keys::kAxis, round.axis);
                             out_.add(keys::kRadius, round.radius);
                           },
-                          [&](const WallSegment& segment) {
-                            out_.add(keys::kFrom, wall.home);
-                            // `to` could not promise the same bits: to - from is rounded.
-                            out_.add(keys::kAlong, segment.along);
-                          },
-                          [&](const Plate& plate) {
-                            // Nor could corners without a point.
-                            out_.add(keys::kPoint, wall.home);
-                            std::string corners;
-                            for (const Vec<3>& corner : plate.corners()) {
-                              corners += (corners.empty() ? "" : ", ") + in_toml(corner);
-                            }
-                            out_.as_it_is(keys::kCorners, "[" + corners + "]", "m");
-                          }},
+                          [&](const Sheet<Dim>& sheet) { write_sheet(wall.home, sheet); }},
                wall.shape);
     write_motion(wall);
+    write_turning(wall);
+    if (wall.runs()) out_.add(keys::kBelt, wall.belt);
+    if (std::isfinite(wall.until)) out_.add(keys::kUntil, wall.until);
+  }
+
+  /// Places are written relative to the wall's point, as they are kept: a sum would be rounded.
+  void write_sheet(const Vec<Dim>& home, const Sheet<Dim>& sheet) {
+    const auto lists = [&] {
+      std::string text;
+      for (const WallPiece<Dim>& piece : sheet.pieces()) {
+        const auto corners = std::visit([](const auto& p) { return p.corners(); }, piece);
+        text += (text.empty() ? "" : ", ") + in_toml(corners);
+      }
+      return "[" + text + "]";
+    };
+    const bool one = sheet.pieces().size() == 1;
+    const WallPiece<Dim>& first = sheet.piece(0);
+    if constexpr (Dim == 2) {
+      if (const auto* arc = std::get_if<Arc>(&first)) {
+        out_.add(keys::kPoint, home);
+        out_.add(keys::kFrom, arc->from());
+        out_.add(keys::kThrough, arc->through());
+        out_.add(keys::kTo, arc->to());
+      } else if (const auto& segment = std::get<WallSegment>(first);
+                 one && segment.from().isZero(0)) {
+        out_.add(keys::kFrom, home);
+        out_.add(keys::kAlong, segment.along());
+      } else {
+        out_.add(keys::kPoint, home);
+        out_.as_it_is(keys::kLines, lists(), "m");
+      }
+    } else {
+      out_.add(keys::kPoint, home);
+      if (const auto* frustum = std::get_if<Frustum>(&first)) {
+        out_.add(keys::kAxis, frustum->axis);
+        if (frustum->height > 0) out_.add(keys::kHeight, frustum->height);
+        out_.add(keys::kRadii, std::array{frustum->low_radius, frustum->high_radius});
+      } else if (one) {
+        out_.as_it_is(keys::kCorners, in_toml(std::get<Plate>(first).corners()), "m");
+      } else {
+        out_.as_it_is(keys::kPlates, lists(), "m");
+      }
+    }
   }
 
   void write_motion(const Wall<Dim>& wall) {
@@ -259,6 +296,11 @@ class Writer {
                             motion.add(keys::kFrequency, m.frequency);
                             times(m);
                           },
+                          [&](const Path<Dim>& m) {
+                            type(detail::MotionType::path);
+                            motion.add(keys::kTimes, m.times);
+                            motion.add(keys::kShifts, m.shifts);
+                          },
                           [&](const Piston<Dim>& m) {
                             type(detail::MotionType::piston);
                             motion.add(keys::kPistonMass, m.mass);
@@ -267,6 +309,31 @@ class Writer {
                           }},
                wall.motion);
     if (!motion.empty()) out_.as_it_is(keys::kMotion, motion.text());
+  }
+
+  void write_turning(const Wall<Dim>& wall) {
+    Inline turning;
+    const auto write = [&](detail::TurningType type, const auto& m, auto&& numbers) {
+      turning.add(keys::kType, text_of(detail::kTurningWords, type));
+      if constexpr (Dim == 3) turning.add(keys::kAxis, m.axis);
+      turning.add(keys::kAbout, m.about);
+      numbers();
+      turning.add(keys::kStart, m.start);
+      if (std::isfinite(m.stop)) turning.add(keys::kStop, m.stop);
+    };
+    std::visit(Overloaded{[](const Upright&) {},
+                          [&](const Turn<Dim>& m) {
+                            write(detail::TurningType::steady, m,
+                                  [&] { turning.add(keys::kRate, m.rate); });
+                          },
+                          [&](const Swing<Dim>& m) {
+                            write(detail::TurningType::swing, m, [&] {
+                              turning.add(keys::kAngle, m.amplitude);
+                              turning.add(keys::kFrequency, m.frequency);
+                            });
+                          }},
+               wall.turning);
+    if (!turning.empty()) out_.as_it_is(keys::kTurning, turning.text());
   }
 
   void write_output() {

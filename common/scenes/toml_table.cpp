@@ -219,8 +219,8 @@ void TomlTable::read_vector(const toml::node& node, const Key& key, std::span<do
   const auto* array = node.as_array();
   if (array == nullptr || array->size() != components.size()) {
     file_.expected(node, path(key),
-                   "[" + std::string(components.size() == 2 ? "x, y" : "x, y, z") + "], each " +
-                       std::string(key.measure.what) + unit_of(key.measure));
+                   components_of(components.size()) + ", each " + std::string(key.measure.what) +
+                       unit_of(key.measure));
   }
   for (std::size_t d = 0; d < components.size(); ++d) {
     components[d] = quantity(*array->get(d), key);

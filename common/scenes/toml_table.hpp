@@ -79,7 +79,7 @@ class TomlTable {
   std::vector<double> numbers(const Key& key);
   template <int N>
   Eigen::Matrix<double, N, 1> vector(const Key& key) {
-    const toml::node& node = require(key, N == 2 ? "[x, y]" : "[x, y, z]");
+    const toml::node& node = require(key, components_of(N));
     Eigen::Matrix<double, N, 1> v;
     read_vector(node, key, {v.data(), static_cast<std::size_t>(N)});
     return v;
@@ -92,6 +92,20 @@ class TomlTable {
       read_vector(item, key, {list.emplace_back().data(), static_cast<std::size_t>(N)});
     }
     return list;
+  }
+  /// Lists of as many vectors as there are.
+  template <int N>
+  std::vector<std::vector<Eigen::Matrix<double, N, 1>>> vector_lists(const Key& key) {
+    std::vector<std::vector<Eigen::Matrix<double, N, 1>>> lists;
+    for (const toml::node& item : list_of(key, "a list of lists of points")) {
+      const toml::array* points = item.as_array();
+      if (points == nullptr || points->empty()) file_.expected(item, path(key), "a list of points");
+      auto& list = lists.emplace_back();
+      for (const toml::node& point : *points) {
+        read_vector(point, key, {list.emplace_back().data(), static_cast<std::size_t>(N)});
+      }
+    }
+    return lists;
   }
   std::int64_t integer(const Key& key, std::int64_t least, std::int64_t fallback);
   bool flag(const Key& key, bool fallback);
@@ -132,6 +146,10 @@ class TomlTable {
  private:
   std::string path(std::string_view name) const {
     return path_.empty() ? std::string(name) : path_ + "." + std::string(name);
+  }
+  /// How so many components are written.
+  static std::string components_of(std::size_t count) {
+    return count == 1 ? "[x]" : count == 2 ? "[x, y]" : "[x, y, z]";
   }
   const toml::node* find(const Key& key);
   const toml::node& require(const Key& key, const std::string& what);

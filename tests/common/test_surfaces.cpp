@@ -83,10 +83,16 @@ struct Found {
 template <int Dim>
 std::vector<Found<Dim>> contacts_at(const std::vector<Wall<Dim>>& walls, const Vec<Dim>& x,
                                     double radius) {
-  std::vector<Found<Dim>> found;
+  std::vector<WallPair> pairs;
   for (int w = 0; w < static_cast<int>(walls.size()); ++w) {
-    const auto foot = contact_foot<Dim>(walls.data(), w, x);
-    if (foot.distance < radius) found.push_back({w, foot.distance, foot.normal});
+    for (int p = 0; p < walls[static_cast<std::size_t>(w)].piece_count(); ++p) {
+      pairs.push_back({0, w, p});
+    }
+  }
+  std::vector<Found<Dim>> found;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const auto foot = contact_foot<Dim>(walls.data(), pairs, k, x, radius);
+    if (foot.distance < radius) found.push_back({pairs[k].wall, foot.distance, foot.normal});
   }
   return found;
 }
@@ -1155,7 +1161,7 @@ TEST_SUITE("plates") {
       CHECK(relative_error(plate.foot(x).distance, distance) < 1e-14);
       CHECK((plate.foot(x).normal - turn * normal).norm() < 1e-14);
       const auto foot = plate.foot(x);
-      CHECK(plate.feature(x - foot.distance * foot.normal, 1e-9) == f);
+      CHECK(plate.feature(0, x - foot.distance * foot.normal, 1e-9) == f);
     };
 
     check(place(0.2, -0.7, 0.5), 0.5, {0, 0, 1}, Feature::face);
@@ -1164,8 +1170,8 @@ TEST_SUITE("plates") {
     check(place(-1.4, 0.1, -0.3), 0.5, {-0.8, 0, -0.6}, Feature::edge);
     check(place(1.2, 1.3, 0.6), 0.7, Vec<3>(2, 3, 6) / 7, Feature::corner);
     check(place(-1.2, 1.3, 0.6), 0.7, Vec<3>(-2, 3, 6) / 7, Feature::corner);
-    CHECK(plate.size() > 2.8);
-    CHECK(plate.has_end());
+    REQUIRE(plate.pieces());
+    CHECK(plate.pieces()->largest() > 2.8);
     // Exactly on it, a normal of the plate.
     CHECK(plate.foot(place(0.3, 0.1, 0)).distance < 1e-15);
     const auto level = Wall<3>::plate("p", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});

@@ -184,7 +184,7 @@ TEST_SUITE("walls") {
                              Wall<Dim>::cylinder("c", 0.3 * oblique<Dim>(), drum_axis<Dim>(), 2)}) {
       std::vector<int> found;
       wall.for_each_within(
-          x, [](int i) { return i % 2 ? 1.0 : 0.3; }, [&](int i) { found.push_back(i); });
+          x, [](int i) { return i % 2 ? 1.0 : 0.3; }, [&](int i, int) { found.push_back(i); });
 
       std::vector<int> expected;
       for (int i = 0; i < 200; ++i) {
@@ -225,9 +225,10 @@ TEST_SUITE("walls") {
     const Vec<Dim> a = 0.3 * oblique<Dim>();
     const double dt = 1e-3;
     // Stopped in mid-swing, at a quarter of a period.
-    for (const std::variant<Fixed, Steady<Dim>, Shake<Dim>, Piston<Dim>>& motion :
+    for (const auto& motion :
          {decltype(Wall<Dim>::motion){Steady<Dim>{a, 0.2, 0.7}},
-          decltype(Wall<Dim>::motion){Shake<Dim>{a, 2, 0.2, 0.825}}}) {
+          decltype(Wall<Dim>::motion){Shake<Dim>{a, 2, 0.2, 0.825}},
+          decltype(Wall<Dim>::motion){Path<Dim>{{0.1, 0.4, 0.9}, {Vec<Dim>::Zero(), a, -2 * a}}}}) {
       CAPTURE(motion.index());
       auto wall = Wall<Dim>::half_space("w", Vec<Dim>::Zero(), up<Dim>());
       wall.motion = motion;

@@ -95,8 +95,8 @@ TEST_SUITE("plates in scenes") {
       CHECK(to_toml(twice) == resolved);
       CHECK(twice.walls[0].home == once.walls[0].home);
       CHECK(twice.walls[0].point == once.walls[0].point);
-      const auto& a = std::get<Plate>(once.walls[0].shape);
-      const auto& b = std::get<Plate>(twice.walls[0].shape);
+      const auto& a = std::get<Plate>(once.walls[0].pieces()->piece(0));
+      const auto& b = std::get<Plate>(twice.walls[0].pieces()->piece(0));
       CHECK(a.corners() == b.corners());
       CHECK(a.normal() == b.normal());
       CHECK(a.size() == b.size());

@@ -177,12 +177,12 @@ TEST_SUITE("scene") {
                          (here + ": expected a scene file, got a folder").c_str(), SceneError);
   }
 
-  TEST_CASE("walls are half-planes, segments or circles, with one of three motions") {
+  TEST_CASE("walls are half-planes, segments or circles, each with a motion") {
     const auto wall = [](const std::string& more) { return message_of(kHeap + more); };
 
     CHECK(wall("[[wall]]\nmaterial = \"rock\"\n") ==
-          "s.toml:43: wall[2].point: missing; expected point and normal, from and to, or point and "
-          "radius");
+          "s.toml:43: wall[2].point: missing; expected a shape: point and normal, from and to, "
+          "points, or point and radius");
     CHECK(wall("point = [0, 0]\n") == "s.toml:38: wall[1].normal: missing; expected [x, y]");
     CHECK(wall("motion = { type = \"piston\", mass = 0, load = [0, 1] }\n") ==
           "s.toml:43: wall[1].motion.mass: expected a positive mass [kg], got 0");
@@ -194,8 +194,8 @@ TEST_SUITE("scene") {
     CHECK(wall("motion = { type = \"steady\", velocity = [0, 1], start = 2, stop = 1 }\n") ==
           "s.toml:43: wall[1].motion.stop: expected a time after start");
     CHECK(wall("motion = { type = \"walk\" }\n") ==
-          "s.toml:43: wall[1].motion.type: expected \"steady\", \"shake\" or \"piston\", got "
-          "\"walk\"");
+          "s.toml:43: wall[1].motion.type: expected \"steady\", \"shake\", \"path\" or "
+          "\"piston\", got \"walk\"");
     CHECK(wall("motion = { type = \"piston\", mass = 1, load = [0, 1], stop = 1 }\n") ==
           "s.toml:43: wall[1].motion.stop: a piston has none: grains stop it; remove this line");
     const std::string rock = "[[wall]]\nmaterial = \"rock\"\n";
@@ -298,8 +298,7 @@ TEST_SUITE("scene") {
 
     CHECK(to_toml(twice) == resolved);
     CHECK(twice.walls.at(1).home == once.walls.at(1).home);
-    CHECK(std::get<WallSegment>(twice.walls.at(1).shape).along ==
-          std::get<WallSegment>(once.walls.at(1).shape).along);
+    CHECK(twice.walls.at(1).corners() == once.walls.at(1).corners());
     CHECK(std::get<HalfSpace<2>>(twice.walls.at(2).shape).normal ==
           std::get<HalfSpace<2>>(once.walls.at(2).shape).normal);
     CHECK(std::get<Cylinder<2>>(twice.walls.at(3).shape).radius == 0.7);

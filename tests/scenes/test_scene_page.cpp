@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <optional>
 #include <regex>
@@ -110,6 +111,12 @@ std::set<std::string> all_keys() {
   return keys;
 }
 
+/// A file of one facet, in the folder where the test runs: scenes given as text begin there.
+void write_mesh(const std::string& file) {
+  std::ofstream(file) << "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                         "vertex 0 1 0\nendloop\nendfacet\nendsolid s\n";
+}
+
 /// Scenes in which every table occurs, and every shape and law that changes which keys are known.
 std::vector<std::string> make_scenes() {
   const std::string plain = R"(dimension = 2
@@ -146,6 +153,10 @@ high = [1, 1]
   const auto moving = [&](const std::string& motion) {
     return with(plain, plane, plane + "[wall.motion]\n" + motion);
   };
+  const auto in_space_with = [&](const std::string& shape) {
+    return with(in_space<3>(plain), "point = [0, 0, 0]\nnormal = [0, 0, 1]\n", shape);
+  };
+  write_mesh("rotor.stl");
   const std::string round = with(plain, plane, "point = [0, 0]\nradius = 1\n");
   return {
       plain,
@@ -161,10 +172,26 @@ high = [1, 1]
       with(plain, fill, "radius = 0.01\n[fill.velocity]\nrandom = 1\n[fill.region]\n"),
       with(plain, plane, "from = [0, 0]\nto = [0, 1]\n"),
       with(plain, plane, "from = [0, 0]\nalong = [0, 1]\n"),
-      with(in_space<3>(plain), "point = [0, 0, 0]\nnormal = [0, 0, 1]\n",
-           "corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\n"),
+      in_space_with("corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\n"),
       round,
       with(in_space<3>(round), "radius = 1\n", "radius = 1\naxis = [0, 0, 1]\n"),
+      with(plain, plane, "points = [[0, 0], [0, 1], [1, 1]]\n"),
+      with(plain, plane, "lines = [[[0, 0], [0, 1]], [[1, 1], [1, 0]]]\n"),
+      with(plain, plane, "from = [0, 0]\nthrough = [0.5, 0.2]\nto = [1, 0]\n"),
+      in_space_with("plates = [[[0, 0, 0], [1, 0, 0], [0, 1, 0]]]\n"),
+      in_space_with("mesh = \"rotor.stl\"\n"),
+      in_space_with("point = [0, 0, 0]\naxis = [0, 0, 1]\nheight = 1\nradius = 1\n"),
+      in_space_with("point = [0, 0, 0]\naxis = [0, 0, 1]\nradii = [0, 1]\n"),
+      with(plain, plane,
+           "from = [0, 0]\nto = [0, 1]\n[wall.turning]\ntype = \"steady\"\nrate = 1\n"),
+      with(plain, plane,
+           "from = [0, 0]\nto = [0, 1]\n[wall.turning]\ntype = \"swing\"\nangle = 1\n"
+           "frequency = 1\n"),
+      in_space_with("point = [0, 0, 0]\nnormal = [0, 0, 1]\n[wall.turning]\ntype = \"steady\"\n"
+                    "axis = [0, 0, 1]\nrate = 1\n"),
+      with(plain, "[output]",
+           "[[box.openings]]\nside = \"bottom\"\nlow = [0.3]\nhigh = [0.6]\n[output]"),
+      moving("type = \"path\"\ntimes = [0, 1, 3]\nshifts = [[0, 0], [0, 1], [1, 1]]\n"),
       moving("type = \"steady\"\nvelocity = [0, 1]\n"),
       moving("type = \"shake\"\namplitude = [0, 1]\nfrequency = 1\n"),
       moving("type = \"piston\"\nmass = 1\nload = [0, 1]\n"),
@@ -247,7 +274,7 @@ TEST_SUITE("scene page") {
     const Page page = read_page();
     const std::set<std::string> keys = all_keys();
     REQUIRE(keys.size() > 50);
-    REQUIRE(page.tables.size() == 13);
+    REQUIRE(page.tables.size() == 15);
     std::set<std::string> explained;
     for (const auto& [path, rows] : page.tables) {
       for (const Row& row : rows) {

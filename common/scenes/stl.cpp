@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stl.hpp"
+
+#include <CGAL/IO/STL.h>
+#include <CGAL/Simple_cartesian.h>
+
+#include <array>
+#include <cstddef>
+#include <stdexcept>
+
+namespace lagrain::detail {
+
+std::vector<WallPiece<3>> read_stl(const std::filesystem::path& file, double scale) {
+  if (!std::filesystem::is_regular_file(file)) throw std::invalid_argument("no such file");
+  std::vector<CGAL::Simple_cartesian<double>::Point_3> points;
+  std::vector<std::array<std::size_t, 3>> facets;
+  if (!CGAL::IO::read_STL(file.string(), points, facets)) {
+    throw std::invalid_argument("it is no STL file");
+  }
+  std::vector<WallPiece<3>> pieces;
+  for (const auto& facet : facets) {
+    std::vector<Vec<3>> corners;
+    for (const std::size_t k : facet) {
+      const auto& p = points[k];
+      corners.push_back(scale * Vec<3>(p.x(), p.y(), p.z()));
+      if (!corners.back().allFinite()) {
+        throw std::invalid_argument("facet " + std::to_string(pieces.size() + 1) +
+                                    " has a corner that is not finite");
+      }
+    }
+    if (Plate::defect(corners).empty()) pieces.push_back(Plate(std::move(corners)));
+  }
+  if (pieces.empty()) throw std::invalid_argument("it holds no facet");
+  return pieces;
+}
+
+}  // namespace lagrain::detail
