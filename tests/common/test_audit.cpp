@@ -20,9 +20,11 @@ constexpr int kBeyondBruteForce = ContactSearch<2>::kBruteForceLimit + 500;
 TEST_SUITE("audit") {
   TEST_CASE_TEMPLATE("the audit counts the contacts that a list lacks, by brute force and by cells",
                      S, Space<2>, Space<3>) {
-    for (const auto& [kind, count] :
+    for (const auto& kind_and_count :
          {std::pair{CloudKind::kUniform, 200}, std::pair{CloudKind::kUniform, kBeyondBruteForce},
           std::pair{CloudKind::kSizes, kBeyondBruteForce}}) {
+      const CloudKind kind = kind_and_count.first;
+      const int count = kind_and_count.second;
       CAPTURE(count);
       Random random(10);
       const auto cloud = make_cloud<S::Dim>(kind, count, random);

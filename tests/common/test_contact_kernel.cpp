@@ -140,27 +140,28 @@ TEST_SUITE("contact_kernel") {
   TEST_CASE_TEMPLATE("every instruction set gives the bits of the scalar path", C, KERNEL_CASES) {
     constexpr int Dim = C::Dim;
     using Law = typename C::Law;
-    for (const auto& [material_count, listing] : {std::pair{1, Listing::tight},
-                                                  {1, Listing::loose},
-                                                  {2, Listing::tight},
-                                                  {2, Listing::loose}}) {
+    for (const auto& kind : {std::pair{1, Listing::tight},
+                             {1, Listing::loose},
+                             {2, Listing::tight},
+                             {2, Listing::loose}}) {
+      const int material_count = kind.first;
+      const Listing listing = kind.second;
       // Counts that fill the lanes and the stretches that are searched, and counts that do not.
       for (const int count : {2, 6, 9, 30, 61, 250}) {
         CAPTURE(material_count);
         CAPTURE(static_cast<int>(listing));
         CAPTURE(count);
-        const auto run = [&, several = material_count > 1, how = listing](
-                             InstructionSet set, Heap<Dim, Law>& heap,
+        const auto run = [&](InstructionSet set, Heap<Dim, Law>& heap,
                              std::vector<PairLoad<Dim, Law::needs>>& kept,
                              std::vector<WallLoad<Dim>>& wall_loads) {
-          const ContactKernel<Dim, Law> kernel(set, !several);
+          const ContactKernel<Dim, Law> kernel(set, material_count == 1);
           const auto scene = heap.scene();
           wall_loads.assign(2, {});
           kept.resize(heap.pairs.size());
           std::vector<Tally> tallies;
           for (int step = 0; step < 3; ++step) {
-            tallies.push_back(kernel.pairs(scene, heap.pairs, how));
-            tallies.push_back(kernel.pairs(scene, heap.pairs, how, kept.data()));
+            tallies.push_back(kernel.pairs(scene, heap.pairs, listing));
+            tallies.push_back(kernel.pairs(scene, heap.pairs, listing, kept.data()));
             tallies.push_back(kernel.walls(scene, heap.wall_pairs, wall_loads.data()));
           }
           return tallies;

@@ -251,7 +251,8 @@ TEST_SUITE("pinned grains") {
       return g;
     };
     const LawTable<LinearSpring> laws(make_law<LinearSpring>({.stiffness = 1e4}));
-    const auto contact = [&](const std::vector<Grain<3>>& list, std::vector<Wall<3>> walls = {}) {
+    const auto contact = [&](const std::vector<Grain<3>>& list,
+                             const std::vector<Wall<3>>& walls = {}) {
       return time_scales(make_grains<3, LinearSpring::needs>(list), laws, walls).contact;
     };
     const double m = 2500 * grain_volume<3>(0.01);
@@ -308,7 +309,8 @@ TEST_SUITE("pinned grains") {
     };
     LawTable<LinearSpring> laws(make_law<LinearSpring>({.stiffness = 1}), 3);
     const auto spring = [](double k) { return make_law<LinearSpring>({.stiffness = k}); };
-    const auto contact = [&](const std::vector<Grain<2>>& list, std::vector<Wall<2>> walls = {}) {
+    const auto contact = [&](const std::vector<Grain<2>>& list,
+                             const std::vector<Wall<2>>& walls = {}) {
       return time_scales(make_grains<2, LinearSpring::needs>(list), laws, walls).contact /
              std::numbers::pi;
     };

@@ -349,14 +349,16 @@ TEST_SUITE("surfaces") {
     const double offsets[] = {-1.5,  -0.3,  -1e-3, -3e-5, -1e-6, -1e-8, -1e-9, -1e-12, -1e-16, 0,
                               1e-16, 1e-12, 1e-9,  1e-8,  1e-6,  3e-5,  1e-3,  0.2,    1.1};
     // By how much a piece goes beyond the place where the next one begins, and lies above it [m].
-    for (const auto& [beyond, above] : {std::pair{0.0, 0.0},
-                                        {5e-16, 0.0},
-                                        {-5e-16, 0.0},
-                                        {1e-9, 0.0},
-                                        {-1e-9, 0.0},
-                                        {0.0, 1e-16},
-                                        {0.0, 1e-9},
-                                        {0.0, -1e-9}}) {
+    for (const auto& misfit : {std::pair{0.0, 0.0},
+                               {5e-16, 0.0},
+                               {-5e-16, 0.0},
+                               {1e-9, 0.0},
+                               {-1e-9, 0.0},
+                               {0.0, 1e-16},
+                               {0.0, 1e-9},
+                               {0.0, -1e-9}}) {
+      const double beyond = misfit.first;
+      const double above = misfit.second;
       for (const bool in_order : {true, false}) {
         CAPTURE(beyond);
         CAPTURE(above);
@@ -393,12 +395,14 @@ TEST_SUITE("surfaces") {
   TEST_CASE("joints that a person writes with rounding are joints") {
     // 0.1 + 0.2 and 0.3; 0.7 and seven tenths added up.
     const double tenths = 0.1 + 0.1 + 0.1 + 0.1 + 0.1 + 0.1 + 0.1;
-    for (const auto& [end, begin] : {std::pair{0.1 + 0.2, 0.3},
-                                     {0.3, 0.1 + 0.2},
-                                     {0.7, tenths},
-                                     {tenths, 0.7},
-                                     {1.0 / 3, 0.3333333333},
-                                     {0.3333333333, 1.0 / 3}}) {
+    for (const auto& joint : {std::pair{0.1 + 0.2, 0.3},
+                              {0.3, 0.1 + 0.2},
+                              {0.7, tenths},
+                              {tenths, 0.7},
+                              {1.0 / 3, 0.3333333333},
+                              {0.3333333333, 1.0 / 3}}) {
+      const double end = joint.first;
+      const double begin = joint.second;
       CAPTURE(end);
       std::vector<Wall<2>> walls{Wall<2>::segment("a", {-1, 0}, {end, 0}),
                                  Wall<2>::segment("b", {begin, 0}, {2, 0})};
@@ -815,7 +819,9 @@ TEST_SUITE("surfaces") {
       }
     }
     // Two flat pieces whose ends differ by as much.
-    for (const auto& [beyond, above] : {std::pair{3e-8, 0.0}, {-3e-8, 0.0}, {0.0, 3e-8}}) {
+    for (const auto& misfit : {std::pair{3e-8, 0.0}, {-3e-8, 0.0}, {0.0, 3e-8}}) {
+      const double beyond = misfit.first;
+      const double above = misfit.second;
       CAPTURE(beyond);
       CAPTURE(above);
       std::vector<Wall<Dim>> walls{flat_piece<Dim>("a", at<Dim>(-1, 0), at<Dim>(beyond, 0)),

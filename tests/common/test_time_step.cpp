@@ -55,7 +55,7 @@ TEST_SUITE("time_step") {
   TEST_CASE("every pair of materials counts with its own law, walls with theirs") {
     const auto g = make_grains<3, LinearSpring::needs>({grain<3>(1, 0), grain<3>(4, 1)});
     LawTable<LinearSpring> laws(make_law<LinearSpring>({.stiffness = 1}), 3);
-    const auto contact = [&](std::vector<Wall<3>> walls) {
+    const auto contact = [&](const std::vector<Wall<3>>& walls) {
       return time_scales(g, laws, walls).contact / std::numbers::pi;
     };
     auto wall = Wall<3>::half_space("floor", Vec<3>::Zero(), up<3>());

@@ -291,7 +291,7 @@ void check(const Triangulation<Dim>& triangulation, const test::SiteSet<Dim>& s,
            const std::vector<Edge>& ends_before) {
   // The others may crash where this one finds a defect.
   REQUIRE(test::audited(Triangulation<Dim>(triangulation)) == "");
-  const Triangulation<Dim> t = triangulation;
+  const Triangulation<Dim> t = triangulation;  // NOLINT: a copy on purpose, as said above
   REQUIRE(untold(t, ends_before) == "");
   REQUIRE(edge_faults(t) == "");
   const auto ids = present(t);
@@ -458,11 +458,11 @@ TEST_SUITE("edge of numbers") {
                             {"near the largest double", 0, 0x1p1016},
                             {"the largest double in a corner", kMost, 0x1p1016},
                             {"subnormal", 0, 0x1p-1074}};
-    for (const auto& [name, shift, scale] : frames) {
+    for (const Frame& frame : frames) {
       for (int seed = 0; seed < test::cases(1, 100); ++seed) {
         Random random(static_cast<std::uint64_t>(seed));
         for (auto at_hand : all_kinds<Dim>(random)) {
-          CAPTURE(name);
+          CAPTURE(frame.name);
           CAPTURE(seed);
           CAPTURE(at_hand.name);
           const auto snap = [&](double x) {
@@ -470,11 +470,12 @@ TEST_SUITE("edge of numbers") {
           };
           at_hand.x = at_hand.x.unaryExpr(snap).eval();
           // A weight is a square: where it would over- or underflow there is none.
-          at_hand.w = scale == 1 ? (16 * at_hand.w / (at_hand.r * at_hand.r)).array().round().eval()
-                                 : Eigen::ArrayXd::Zero(at_hand.size());
+          at_hand.w = frame.scale == 1
+                          ? (16 * at_hand.w / (at_hand.r * at_hand.r)).array().round().eval()
+                          : Eigen::ArrayXd::Zero(at_hand.size());
           auto there = at_hand;
           const auto carry = [&](int i) {
-            there.x.col(i) = scale * (at_hand.x.col(i).array() + shift).matrix();
+            there.x.col(i) = frame.scale * (at_hand.x.col(i).array() + frame.shift).matrix();
           };
           for (int i = 0; i < there.size(); ++i) carry(i);
           auto expected = test::built(at_hand);

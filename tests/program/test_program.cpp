@@ -149,7 +149,7 @@ TEST_SUITE("program") {
       CHECK(place.run({"run", name, "--out", "result"}) == 2);
       CHECK(place.out().empty());
       CHECK(!fs::exists(place / "result"));
-      const std::string err = place.err();
+      std::string err = place.err();
       CHECK(std::count(err.begin(), err.end(), '\n') == 1);
       return err;
     };

@@ -155,7 +155,7 @@ bool too_slow() {
 
 /// LAMMPS if it is installed; if not, the word by which ctest knows that nothing was tested.
 std::optional<fs::path> lammps_or_message() {
-  const auto program = find_lammps();
+  auto program = find_lammps();
   if (!program) MESSAGE("SKIPPED: LAMMPS is not installed");
   return program;
 }

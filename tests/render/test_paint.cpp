@@ -28,14 +28,14 @@ using lagrain::test::psnr;
 using lagrain::test::relative_error;
 
 // Mesa itself loses some bytes once when it starts; leaks of ours are still reported.
-extern "C" const char* __lsan_default_suppressions() {
+extern "C" const char* __lsan_default_suppressions() {  // NOLINT: the sanitizer gives the name
   return "leak:libOSMesa\nleak:libEGL_mesa\nleak:libgallium\nleak:swrast_dri";
 }
 
 namespace {
 
 // Mesa keeps compiled shaders in the home folder; a test writes nowhere but to its own folder.
-[[maybe_unused]] const int no_shader_cache = setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
+[[maybe_unused]] const int kNoShaderCache = setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
 
 constexpr Colour kBlack{0, 0, 0, 255};
 

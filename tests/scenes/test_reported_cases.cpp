@@ -235,10 +235,10 @@ TEST_SUITE("reported cases") {
     CHECK(has(explain(*run), "nothing in the scene can move"));
     CHECK(!has(explain(*run), "inf"));
     CHECK(!has(explain(*run), "nan"));
-    for (const auto& [name, value] : facts(*run)) {
-      CAPTURE(name);
-      CHECK(!has(value, "inf"));
-      CHECK(!has(value, "nan"));
+    for (const auto& fact : facts(*run)) {
+      CAPTURE(fact.first);
+      CHECK(!has(fact.second, "inf"));
+      CHECK(!has(fact.second, "nan"));
     }
     const auto written = recorded<2>("time_step = \"10 us\"\n" + text);
     CHECK(written.message == "");

@@ -49,9 +49,9 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 /// What stands between backticks.
 std::vector<std::string> in_backticks(const std::string& cell) {
-  static const std::regex kQuoted("`([^`]*)`");
+  static const std::regex quoted("`([^`]*)`");
   std::vector<std::string> values;
-  for (std::sregex_iterator at(cell.begin(), cell.end(), kQuoted), end; at != end; ++at) {
+  for (std::sregex_iterator at(cell.begin(), cell.end(), quoted), end; at != end; ++at) {
     values.push_back((*at)[1]);
   }
   return values;
@@ -276,7 +276,9 @@ TEST_SUITE("scene page") {
     REQUIRE(keys.size() > 50);
     REQUIRE(page.tables.size() == 15);
     std::set<std::string> explained;
-    for (const auto& [path, rows] : page.tables) {
+    for (const auto& table : page.tables) {
+      const std::string& path = table.first;
+      const std::vector<Row>& rows = table.second;
       for (const Row& row : rows) {
         INFO("[", path, "] ", row.key);
         CHECK(keys.contains(row.key));
@@ -300,7 +302,9 @@ TEST_SUITE("scene page") {
     const Page page = read_page();
     const std::regex unit("\\[([^\\]]+)\\], got a date");
     const std::regex word("\"([^\"]+)\"");
-    for (const auto& [path, rows] : page.tables) {
+    for (const auto& table : page.tables) {
+      const std::string& path = table.first;
+      const std::vector<Row>& rows = table.second;
       for (const Row& row : rows) {
         INFO("[", path, "] ", row.key);
         std::set<std::string> ranges;
@@ -352,7 +356,9 @@ TEST_SUITE("scene page") {
       }
       return reason;
     };
-    for (const auto& [path, rows] : page.tables) {
+    for (const auto& table : page.tables) {
+      const std::string& path = table.first;
+      const std::vector<Row>& rows = table.second;
       for (const Row& row : rows) {
         for (const std::string& value : in_backticks(row.fallback)) {
           INFO("[", path, "] ", row.key, " = ", value);
