@@ -126,9 +126,9 @@ class Plate {
   double size_ = 0;
 };
 
-/// What a straight line sweeps that is turned about an axis: the side of a truncated cone. With two
-/// equal radii it is a cylinder of finite length, without a height a ring; a ring whose inner radius
-/// is 0 is a disc.
+/// What a straight line sweeps that is turned about an axis: the side of a truncated cone. With
+/// two equal radii it is a cylinder of finite length, without a height a ring; a ring whose inner
+/// radius is 0 is a disc.
 ///
 /// A grain touches it at its nearest point alone: small grains against round walls.
 struct Frustum {
@@ -154,8 +154,8 @@ template <int Dim>
 using WallPiece =
     std::conditional_t<Dim == 2, std::variant<WallSegment, Arc>, std::variant<Plate, Frustum>>;
 
-/// Pieces that are one wall: a polyline, the facets of a mesh, or one piece alone. Copies share
-/// them.
+/// Pieces that are one wall: a polyline, the facets of a mesh, or one piece alone. Copies of a
+/// sheet share them.
 template <int Dim>
 class Sheet {
  public:
@@ -174,8 +174,8 @@ class Sheet {
   double smallest() const { return parts_->smallest; }  ///< size of its smallest piece [m]
   double extent() const { return parts_->extent; }      ///< no point is further from 0 [m]
 
-  /// The pieces whose boxes are no further than `reach` from x, in increasing order; some may be
-  /// further.
+  /// The pieces whose boxes are no further than `reach` from x, in increasing order, and perhaps
+  /// some others.
   /// @param[out] found  what was there is lost
   void near(const Vec<Dim>& x, double reach, std::vector<int>& found) const;
   /// The piece that is nearest to x.

@@ -195,11 +195,11 @@ TEST_SUITE("walls in scenes") {
       }
     }
     CHECK(relative_error(covered, 4 * 3 - 2) < 1e-12);
-    const Scene<2> flat = parse_scene<2>(
-        plane() +
-            "[[box]]\nlow = [0, 0]\nhigh = [4, 10]\nopenings = [{ side = \"right\", low = [1], "
-            "high = [2] }]\n",
-        "s.toml");
+    const Scene<2> flat =
+        parse_scene<2>(plane() +
+                           "[[box]]\nlow = [0, 0]\nhigh = [4, 10]\n"
+                           "openings = [{ side = \"right\", low = [1], high = [2] }]\n",
+                       "s.toml");
     CHECK(flat.walls[1].piece_count() == 2);
     CHECK(flat.walls[1].foot({4, 1.5}).distance == 0.5);
     CHECK(flat.walls[1].foot({3.5, 0.5}).distance == 0.5);
@@ -223,10 +223,9 @@ TEST_SUITE("walls in scenes") {
     CHECK(has(
         in_plane("point = [0, 0]\nnormal = [0, 1]\nturning = { type = \"steady\", rate = 1 }\n"),
         "what has no end turns about its normal alone; give segments"));
-    CHECK(
-        has(in_plane("from = [0, 0]\nto = [0, 1]\nturning = { type = \"steady\", rate = 1, axis = "
-                     "[0, 0, 1] }\n"),
-            "in the plane all turns about the same"));
+    CHECK(has(in_plane("from = [0, 0]\nto = [0, 1]\n"
+                       "turning = { type = \"steady\", rate = 1, axis = [0, 0, 1] }\n"),
+              "in the plane all turns about the same"));
     CHECK(has(in_space("points = [[0, 0, 0], [1, 1, 1]]\n"), "lines are for dimension = 2"));
     CHECK(has(in_space("plates = [[[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 0, 0], [1, 0, 0]]]\n"),
               "plate 2: a plate needs at least 3 corners"));
@@ -235,14 +234,16 @@ TEST_SUITE("walls in scenes") {
               "a ring needs two radii that differ"));
     CHECK(has(in_space("point = [0, 0, 0]\naxis = [0, 0, 1]\nradii = [1]\n"),
               "[radius at point, radius at the end]"));
-    CHECK(has(in_space("corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nturning = { type = \"swing\", "
-                       "axis = [0, 0, 0], angle = 1, frequency = 1 }\n"),
+    CHECK(has(in_space("corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\n"
+                       "turning = { type = \"swing\", axis = [0, 0, 0], angle = 1, "
+                       "frequency = 1 }\n"),
               "turning.axis: expected a direction"));
-    CHECK(has(in_plane("from = [0, 0]\nto = [1, 0]\nmotion = { type = \"path\", times = [0, 1], "
-                       "shifts = [[0, 0]] }\n"),
+    CHECK(has(in_plane("from = [0, 0]\nto = [1, 0]\n"
+                       "motion = { type = \"path\", times = [0, 1], shifts = [[0, 0]] }\n"),
               "a path needs as many places as times"));
-    CHECK(has(in_plane("from = [0, 0]\nto = [1, 0]\nmotion = { type = \"piston\", mass = 1, load = "
-                       "[0, 1] }\nturning = { type = \"steady\", rate = 1 }\n"),
+    CHECK(has(in_plane("from = [0, 0]\nto = [1, 0]\n"
+                       "motion = { type = \"piston\", mass = 1, load = [0, 1] }\n"
+                       "turning = { type = \"steady\", rate = 1 }\n"),
               "a piston does not turn"));
     CHECK(has(in_plane("from = [0, 0]\nto = [1, 0]\nuntil = 0\n"), "wall[0].until"));
 
@@ -253,8 +254,8 @@ TEST_SUITE("walls in scenes") {
     CHECK(has(opening("side = \"botom\", low = [1], high = [2]"), "did you mean \"bottom\"?"));
     CHECK(has(opening("side = \"bottom\", low = [2], high = [1]"), "expected low below high"));
     CHECK(has(opening("side = \"bottom\", low = [2], high = [5]"), "both on the side"));
-    CHECK(has(error_of<2>(box + "open = [\"bottom\"]\nopenings = [{ side = \"bottom\", low = [1], "
-                                "high = [2] }]\n"),
+    CHECK(has(error_of<2>(box + "open = [\"bottom\"]\n"
+                                "openings = [{ side = \"bottom\", low = [1], high = [2] }]\n"),
               "is left out as a whole"));
   }
 
