@@ -73,6 +73,7 @@ void join_walls(std::vector<Wall<Dim>>& walls) {
       partners[b].push_back(a);
     }
     walls[a].joined = !partners[a].empty() || walls[a].piece_count() > 1;
+    walls[a].uneven = walls[a].turns() || walls[a].runs();
   }
   // Walls that hang together share one seam, so that each of them judges a joint alike.
   std::vector<bool> seen(n);
@@ -282,6 +283,18 @@ std::string Wall<Dim>::defect() const {
 }
 
 template <int Dim>
+typename Wall<Dim>::Foot Wall<Dim>::foot_on(const Sheet<Dim>& sheet, int piece,
+                                            const Vec<Dim>& x) const {
+  const WallPiece<Dim>& p = sheet.piece(piece);
+  const Vec<Dim> own = std::visit([&](const auto& q) { return q.nearest(in_own_frame(x)); }, p);
+  const Vec<Dim> away = x - (turned_ ? Vec<Dim>(point + frame_ * own) : Vec<Dim>(point + own));
+  const double distance = away.norm();
+  if (distance > 0) return {distance, away / distance};
+  // A centre exactly on the wall is pushed out along a normal of it.
+  return {0, frame_ * std::visit([&](const auto& q) { return q.normal_at(own); }, p)};
+}
+
+template <int Dim>
 void Wall<Dim>::turn_to(double t) {
   const Vec<Dim> shift =
       std::holds_alternative<Fixed>(motion) ? Vec<Dim>(Vec<Dim>::Zero()) : Vec<Dim>(point - home);
@@ -310,6 +323,8 @@ std::vector<Vec<Dim>> Wall<Dim>::corners() const {
 
 template std::string Wall<2>::defect() const;
 template std::string Wall<3>::defect() const;
+template Wall<2>::Foot Wall<2>::foot_on(const Sheet<2>&, int, const Vec<2>&) const;
+template Wall<3>::Foot Wall<3>::foot_on(const Sheet<3>&, int, const Vec<3>&) const;
 template void Wall<2>::turn_to(double);
 template void Wall<3>::turn_to(double);
 template std::vector<Vec<2>> Wall<2>::corners() const;

@@ -329,19 +329,21 @@ struct Sweep {
   void walls(PairTable<WallPair, typename Law::template Memory<Dim>>& table, std::size_t first,
              std::size_t partial, WallLoad<Dim>* wall_loads) {
     Slots i;
+    std::array<const Wall<Dim>*, kWidth> wall;
     Real distance, mass;
     Vec<Dim, Real> normal, wall_velocity;
     for (std::size_t k = 0; k < kWidth; ++k) {
       const auto [slot, w, piece] = table.pairs()[first + k];
       const int at = static_cast<int>(k);
-      const Wall<Dim>& wall = scene.walls[w];
-      const Vec<Dim> centre = scene.grains[slot].position();
-      const auto foot = contact_foot<Dim>(scene.walls, table.pairs(), first + k, centre,
-                                          scene.grains[slot].radius());
-      const Vec<Dim> surface_velocity =
-          wall.drives() ? wall.velocity_at(centre - foot.distance * foot.normal, foot.normal)
-                        : wall.velocity;
       i[k] = slot;
+      wall[k] = &scene.walls[w];
+      const Vec<Dim> centre = scene.grains[slot].position();
+      const auto foot = wall[k]->joined ? contact_foot<Dim>(scene.walls, table.pairs(), first + k,
+                                                            centre, scene.grains[slot].radius())
+                                        : wall[k]->foot(piece, centre);
+      const Vec<Dim> surface_velocity =
+          wall[k]->uneven ? wall[k]->velocity_at(centre - foot.distance * foot.normal, foot.normal)
+                          : wall[k]->velocity;
       set_lane(distance, at, foot.distance);
       set_lane(mass, at, scene.load(slot).at[Load::kMass]);
       for (int d = 0; d < Dim; ++d) {
@@ -355,8 +357,7 @@ struct Sweep {
 
     Memory memory = read_memory(table, InRow{first});
     const auto wall_material = [&](std::size_t k) {
-      const int w = table.pairs()[first + k].wall;
-      return static_cast<std::size_t>(scene.walls[w].material);
+      return static_cast<std::size_t>(wall[k]->material);
     };
     const Response<Dim, Real> response = respond(touch, touching, i, wall_material, memory);
     write_memory(table, InRow{first}, memory);
@@ -373,16 +374,13 @@ struct Sweep {
       const auto in_lane = [&](const auto& of_all) {
         return Vec<Dim>::NullaryExpr([&](Eigen::Index d) { return lane(of_all[d], at); });
       };
-      const int w = table.pairs()[first + k].wall;
-      const Wall<Dim>& wall = scene.walls[w];
-      wall_loads[w].force -= in_lane(response.force);
-      if (!wall.turns() && !wall.runs()) continue;
+      WallLoad<Dim>& load = wall_loads[table.pairs()[first + k].wall];
+      load.force -= in_lane(response.force);
+      if (!wall[k]->uneven) continue;
       const Vec<Dim> force = in_lane(response.force), n = in_lane(normal);
       const Vec<Dim> foot = scene.grains[i[k]].position() - lane(distance, at) * n;
-      if (wall.turns()) {
-        wall_loads[w].torque -= torque<double>(Vec<Dim>(foot - wall.pivot), force);
-      }
-      if (wall.runs()) wall_loads[w].power -= force.dot(wall.belt_along(n));
+      if (wall[k]->turns()) load.torque -= torque<double>(Vec<Dim>(foot - wall[k]->pivot), force);
+      if (wall[k]->runs()) load.power -= force.dot(wall[k]->belt_along(n));
     }
   }
 };

@@ -154,6 +154,7 @@ struct Wall {
   SpinVec<Dim> torque = SpinVec<Dim>::Zero();  ///< the same about the pivot [N m]
   double work = 0;      ///< done on the grains since the start, without forces that move it [J]
   bool joined = false;  ///< whether it may meet other walls, or itself, see join_walls
+  bool uneven = false;  ///< whether the velocity of its surface may differ from place to place
   double seam = 0;      ///< to which joints of that surface are known [m]
   /// @}
 
@@ -247,6 +248,7 @@ struct Wall {
   /// Velocity of the surface [m/s] at a place of it with this normal.
   Vec<Dim> velocity_at(const Vec<Dim>& place, const Vec<Dim>& normal) const {
     Vec<Dim> v = velocity;
+    if (!uneven) return v;
     if (turns()) v += cross<double>(spin, place - pivot);
     if (runs()) v += belt_along(normal);
     return v;
@@ -256,6 +258,7 @@ struct Wall {
   /// The power of a load: what the grains do to the wall [W].
   double power_of(const WallLoad<Dim>& load) const {
     double power = load.force.dot(velocity);
+    if (!uneven) return power;
     if (turns()) power += load.torque.dot(spin);
     if (runs()) power += load.power;
     return power;
@@ -271,7 +274,8 @@ struct Wall {
   /// No part of it moves faster than this in a frame [m/s].
   double fastest(const Vec<Dim>& frame_velocity) const {
     if (!turns()) return (velocity - frame_velocity).norm();
-    return (velocity_at(point, Vec<Dim>::Zero()) - frame_velocity).norm() + spin.norm() * swept();
+    const Vec<Dim> of_point = velocity + cross<double>(spin, point - pivot);
+    return (of_point - frame_velocity).norm() + spin.norm() * swept();
   }
   /// Where a place [m] of the wall at a pose is now.
   Vec<Dim> carried_along(const WallPose<Dim>& then, const Vec<Dim>& x) const {
@@ -326,15 +330,8 @@ struct Wall {
   Foot foot_on(const HalfSpace<Dim>& plane, int, const Vec<Dim>& x) const {
     return {(x - point).dot(plane.normal), plane.normal};
   }
-  Foot foot_on(const Sheet<Dim>& sheet, int piece, const Vec<Dim>& x) const {
-    const WallPiece<Dim>& p = sheet.piece(piece);
-    const Vec<Dim> own = std::visit([&](const auto& q) { return q.nearest(in_own_frame(x)); }, p);
-    const Vec<Dim> away = x - (turned_ ? Vec<Dim>(point + frame_ * own) : Vec<Dim>(point + own));
-    const double distance = away.norm();
-    if (distance > 0) return {distance, away / distance};
-    // A centre exactly on the wall is pushed out along a normal of it.
-    return {0, frame_ * std::visit([&](const auto& q) { return q.normal_at(own); }, p)};
-  }
+  // Not inlined: kernels are faster for half-spaces, the common case, if this is apart.
+  Foot foot_on(const Sheet<Dim>& sheet, int piece, const Vec<Dim>& x) const;
   Foot foot_on(const Cylinder<Dim>& cylinder, int, const Vec<Dim>& x) const {
     const Vec<Dim> arm = x - point;
     const Vec<Dim> away = arm - arm.dot(cylinder.axis) * cylinder.axis;
@@ -397,7 +394,7 @@ struct WallPair {
 
 /// Finds which walls may meet others, with which they are one surface then: the boxes of two touch,
 /// or one of two that have an end moves. A wall of several pieces meets itself.
-/// Walls that hang together get one seam.
+/// Walls that hang together get one seam. Also sees which walls are uneven.
 template <int Dim>
 void join_walls(std::vector<Wall<Dim>>& walls);
 

@@ -76,6 +76,7 @@ struct Heap {
     walls.back().turning = Turn<Dim>{SpinVec<Dim>::Unit(0), 0.2, Vec<Dim>::Zero()};
     walls.back().spin = 0.2 * SpinVec<Dim>::Unit(0);
     walls.back().belt = 0.3 * Vec<Dim>::Unit(0);
+    walls.back().uneven = true;
 
     std::vector<Pair> list;
     std::vector<WallPair> wall_list;

@@ -114,6 +114,7 @@ TEST_SUITE("moving walls") {
         wall.turning = Turn<Dim>{tilted_axis<Dim>(), -1.3, about};
       }
       REQUIRE(wall.defect().empty());
+      wall.uneven = true;
       for (const double t : {0.1, 0.35, 0.8}) {
         wall.advance(t - dt, dt);
         const auto before = wall.corners();
