@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -22,6 +23,18 @@ namespace fs = std::filesystem;
 std::string last_reason() { return errno != 0 ? std::strerror(errno) : "unknown error"; }
 
 }  // namespace
+
+std::string read_file(const fs::path& file) {
+  std::error_code ignored;
+  if (fs::is_directory(file, ignored)) {
+    throw SceneError(file.string() + ": expected a file, got a folder");
+  }
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw SceneError(file.string() + ": cannot be read");
+  std::ostringstream text;
+  text << in.rdbuf();
+  return std::move(text).str();
+}
 
 void write_file(const fs::path& file, std::string_view text) {
   const fs::path part = file.string() + ".part";

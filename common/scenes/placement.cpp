@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <lagrain/placement.hpp>
 
+#include "grain_file.hpp"
 #include "pushing.hpp"
 
 #include <lagrain/numbers.hpp>
@@ -59,6 +60,11 @@ class Occupied {
   }
 
  private:
+  std::int64_t cell_of(double x) const {
+    constexpr double kFar = 9e18;  // beyond it the numbers of cells end, and all is one cell
+    return static_cast<std::int64_t>(std::clamp(std::floor(x / cell_), -kFar, kFar));
+  }
+
   template <class F>
   void visit_cells(const Vec<Dim>& x, double r, F&& f) const {
     std::array<std::int64_t, Dim> low;
@@ -66,8 +72,8 @@ class Occupied {
     std::array<std::int64_t, Dim> high;
     for (std::size_t d = 0; d < Dim; ++d) {
       const auto k = static_cast<Eigen::Index>(d);
-      low[d] = static_cast<std::int64_t>(std::floor((x[k] - r) / cell_));
-      high[d] = static_cast<std::int64_t>(std::floor((x[k] + r) / cell_));
+      low[d] = cell_of(x[k] - r);
+      high[d] = cell_of(x[k] + r);
     }
     at = low;
     for (bool more = true; more;) {
@@ -92,10 +98,17 @@ class Occupied {
 template <int Dim>
 class Placer {
  public:
-  explicit Placer(const Scene<Dim>& scene) : scene_(scene), occupied_(cell_size(scene)) {}
+  explicit Placer(const Scene<Dim>& scene)
+      : scene_(scene),
+        listed_(read_files(scene)),
+        cell_(cell_size(scene, listed_)),
+        occupied_(cell_) {}
 
   Placement<Dim> place() {
-    for (std::size_t g = 0; g < scene_.grains.size(); ++g) place_by_hand(g);
+    for (const PlacedGrain<Dim>& grain : scene_.grains) place_by_hand(grain);
+    for (const auto& file : listed_) {
+      for (const PlacedGrain<Dim>& grain : file.grains) place_by_hand(grain);
+    }
     for (std::size_t f = 0; f < scene_.fills.size(); ++f) fill(f);
     return std::move(placed_);
   }
@@ -108,8 +121,17 @@ class Placer {
     return *std::max_element(listed.values.begin(), listed.values.end());
   }
 
+  static std::vector<detail::ListedGrains<Dim>> read_files(const Scene<Dim>& scene) {
+    std::vector<detail::ListedGrains<Dim>> files;
+    for (std::size_t k = 0; k < scene.grain_files.size(); ++k) {
+      files.push_back(detail::read_grains(scene, k));
+    }
+    return files;
+  }
+
   /// Wide enough for most grains to lie in a few cells, and no grain in too many.
-  static double cell_size(const Scene<Dim>& scene) {
+  static double cell_size(const Scene<Dim>& scene,
+                          const std::vector<detail::ListedGrains<Dim>>& listed) {
     double small = std::numeric_limits<double>::infinity();
     double large = 0;
     const auto consider = [&](double r) {
@@ -117,10 +139,18 @@ class Placer {
       large = std::max(large, r);
     };
     for (const auto& fill : scene.fills) consider(largest(fill.radius));
-    if (scene.fills.empty()) {
-      for (const auto& grain : scene.grains) consider(grain.radius);
-    } else {
-      for (const auto& grain : scene.grains) large = std::max(large, grain.radius);
+    for (const auto& file : listed) {
+      double sum = 0;
+      for (const auto& grain : file.grains) {
+        sum += grain.radius;
+        large = std::max(large, grain.radius);
+      }
+      consider(sum / static_cast<double>(file.grains.size()));
+    }
+    const bool alone = scene.fills.empty() && listed.empty();
+    for (const auto& grain : scene.grains) {
+      large = std::max(large, grain.radius);
+      if (alone) small = std::min(small, grain.radius);
     }
     return std::max(2 * small, large / 50);
   }
@@ -142,30 +172,44 @@ class Placer {
     return v.normalized();
   }
 
-  void place_by_hand(std::size_t index) {
-    const PlacedGrain<Dim>& p = scene_.grains[index];
-    const std::string key = "grain[" + std::to_string(index) + "]";
+  /// A refusal of a grain that was placed by hand or listed in a file: by the scene's key, or by
+  /// file and line.
+  SceneError refusal(std::size_t grain, const std::string& message) const {
+    const std::size_t by_hand = scene_.grains.size();
+    return grain < by_hand ? scene_.error(name_of(grain), message)
+                           : SceneError(name_of(grain) + ": " + message);
+  }
+  std::string name_of(std::size_t grain) const {
+    if (grain < scene_.grains.size()) return "grain[" + std::to_string(grain) + "]";
+    grain -= scene_.grains.size();
+    std::size_t file = 0;
+    for (; grain >= listed_[file].grains.size(); ++file) grain -= listed_[file].grains.size();
+    return scene_.grain_files[file].file.string() + ":" +
+           std::to_string(listed_[file].lines[grain]);
+  }
+
+  void place_by_hand(const PlacedGrain<Dim>& p) {
+    const std::size_t index = placed_.grains.size();
     const double limit = scene_.largest_initial_overlap;
-    const auto percent = [](double overlap) {
-      return shortest(std::round(1000 * overlap) / 10) + " % of the smaller radius (limit ";
+    const auto overlaps = [&](const std::string& other, double overlap) {
+      return refusal(index, "overlaps " + other + " by " +
+                                shortest(std::round(1000 * overlap) / 10) +
+                                " % of the smaller radius (limit " + shortest(100 * limit) +
+                                " %); largest_initial_overlap allows more");
     };
     for (const Wall<Dim>& wall : scene_.walls) {
       if (p.pinned && !wall.yields()) continue;  // neither can move
       const double distance = wall.foot(p.position).distance;
-      if (distance < 0) throw scene_.error(key, "lies behind wall \"" + wall.name + "\"");
+      if (distance < 0) throw refusal(index, "lies behind wall \"" + wall.name + "\"");
       const double overlap = (p.radius - distance) / p.radius;
-      if (overlap > limit) {
-        throw scene_.error(key, "overlaps wall \"" + wall.name + "\" by " + percent(overlap) +
-                                    shortest(100 * limit) + " %)");
-      }
+      if (overlap > limit) throw overlaps("wall \"" + wall.name + "\"", overlap);
     }
     occupied_.for_each_near(p.position, p.radius, [&](int j) {
       const Grain<Dim>& other = placed_.grains[static_cast<std::size_t>(j)];
       const double overlap = (p.radius + other.radius - (p.position - other.position).norm()) /
                              std::min(p.radius, other.radius);
       if (overlap > limit && !(p.pinned && other.pinned)) {
-        throw scene_.error(key, "overlaps grain[" + std::to_string(j) + "] by " + percent(overlap) +
-                                    shortest(100 * limit) + " %)");
+        throw overlaps(name_of(static_cast<std::size_t>(j)), overlap);
       }
       return true;
     });
@@ -382,13 +426,15 @@ class Placer {
     for (std::size_t k = 0; k < chosen.size(); ++k) {
       placed_.grains[chosen[k]].position = grains[k].position;
     }
-    occupied_ = Occupied<Dim>(cell_size(scene_));
+    occupied_ = Occupied<Dim>(cell_);
     for (std::size_t i = 0; i < placed_.grains.size(); ++i) {
       occupied_.add(static_cast<int>(i), placed_.grains[i].position, placed_.grains[i].radius);
     }
   }
 
   const Scene<Dim>& scene_;
+  std::vector<detail::ListedGrains<Dim>> listed_;  // of each file
+  double cell_;                                    // [m]
   Occupied<Dim> occupied_;
   Placement<Dim> placed_;
 };

@@ -79,7 +79,7 @@ class Recorder {
     make_folder(options.folder);
     std::error_code ignored;
     fs::remove(options.folder / "summary.txt", ignored);
-    write_file(options.folder / "scene.toml", to_toml(run.scene()));
+    write_scene();
     for (auto& format : formats_) format->begin(run);
   }
 
@@ -109,6 +109,19 @@ class Recorder {
  private:
   using Clock = std::chrono::steady_clock;
   static constexpr std::int64_t kStepsBetweenCopies = 64;  // of the state, in case all goes wrong
+
+  /// Writes the scene, with copies of the files that it reads: it stays what was run, whatever
+  /// becomes of them. All are read first, because a copy may take the place of one.
+  void write_scene() const {
+    Scene<Dim> scene = run_.scene();
+    std::vector<std::string> texts;
+    for (const GrainFile<Dim>& grains : scene.grain_files) texts.push_back(read_file(grains.file));
+    for (std::size_t k = 0; k < texts.size(); ++k) {
+      scene.grain_files[k].file = "grains_" + std::to_string(k + 1) + ".csv";
+      write_file(options_.folder / scene.grain_files[k].file, texts[k]);
+    }
+    write_file(options_.folder / "scene.toml", to_toml(scene));
+  }
 
   static double or_else(double value, double otherwise) { return value > 0 ? value : otherwise; }
 

@@ -64,6 +64,7 @@ inline constexpr Key kPair{"pair"};
 inline constexpr Key kMaterials{"materials"};
 inline constexpr Key kFill{"fill"};
 inline constexpr Key kGrain{"grain"};
+inline constexpr Key kGrains{"grains"};
 inline constexpr Key kWall{"wall"};
 inline constexpr Key kBox{"box"};
 inline constexpr Key kOutput{"output"};
@@ -89,6 +90,10 @@ inline constexpr Key kRandomSpeed{"random", kSpeed, Range::not_negative};
 inline constexpr Key kPosition{"position", kLength};
 inline constexpr Key kPinned{"pinned"};
 inline constexpr Key kSpin{"spin", kAngularVelocity};
+
+inline constexpr Key kFile{"file"};
+inline constexpr Key kShift{"shift", kLength};
+inline constexpr Key kAtRest{"at_rest"};
 
 inline constexpr Key kPoint{"point", kLength};
 inline constexpr Key kNormal{"normal", kNumber};

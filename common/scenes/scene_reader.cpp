@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <lagrain/files.hpp>
 #include <lagrain/scene.hpp>
 
 #include "scene_keys.hpp"
@@ -7,10 +8,8 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <initializer_list>
 #include <numeric>
-#include <sstream>
 #include <stdexcept>
 
 namespace lagrain {
@@ -178,12 +177,14 @@ class Reader {
     read_laws();
     top_.for_each(keys::kFill, [&](TomlTable& s, int) { read_fill(s); });
     top_.for_each(keys::kGrain, [&](TomlTable& s, int) { read_grain(s); });
+    top_.for_each(keys::kGrains, [&](TomlTable& s, int) { read_grain_file(s); });
     top_.for_each(keys::kWall, [&](TomlTable& s, int index) { read_wall(s, index); });
     top_.for_each(keys::kBox, [&](TomlTable& s, int) { read_box(s); });
     read_output();
     top_.finish();
-    if (scene_.fills.empty() && scene_.grains.empty()) {
-      throw SceneError(file_.name + ": no grains: expected at least one [[fill]] or [[grain]]");
+    if (scene_.fills.empty() && scene_.grains.empty() && scene_.grain_files.empty()) {
+      throw SceneError(file_.name +
+                       ": no grains: expected at least one [[fill]], [[grain]] or [[grains]]");
     }
     return std::move(scene_);
   }
@@ -351,6 +352,19 @@ class Reader {
       }
     }
     scene_.grains.push_back(grain);
+  }
+
+  void read_grain_file(TomlTable& s) {
+    GrainFile<Dim> grains;
+    if (!s.has(keys::kFile)) {
+      s.missing(keys::kFile, "a file of grains (CSV); a single grain is a table [[grain]]");
+    }
+    grains.file = folder_ / s.text(keys::kFile);
+    if (s.has(keys::kMaterial)) grains.material = material_of(s, true);
+    if (s.has(keys::kShift)) grains.shift = s.vector<Dim>(keys::kShift);
+    grains.at_rest = s.flag(keys::kAtRest, grains.at_rest);
+    grains.pinned = s.flag(keys::kPinned, grains.pinned);
+    scene_.grain_files.push_back(std::move(grains));
   }
 
   /// Reads a wall. Its keys tell its shape.
@@ -780,18 +794,6 @@ class Reader {
   TomlTable top_;
 };
 
-std::string whole_file(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) {
-    throw SceneError(file.string() + ": expected a scene file, got a folder");
-  }
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw SceneError(file.string() + ": cannot be read");
-  std::ostringstream text;
-  text << in.rdbuf();
-  return std::move(text).str();
-}
-
 /// Scenes are called by their file's name in messages, without the folder.
 std::string called(const std::filesystem::path& file) { return file.filename().string(); }
 
@@ -806,12 +808,6 @@ int dimension_of(const toml::table& root, const std::string& name) {
   return static_cast<int>(value->get());
 }
 
-}  // namespace
-
-int scene_dimension(const std::filesystem::path& file) {
-  return dimension_of(detail::parse_toml(whole_file(file), called(file)), called(file));
-}
-
 template <int Dim>
 Scene<Dim> parse(std::string_view text, const std::string& name,
                  const std::filesystem::path& folder) {
@@ -824,14 +820,20 @@ Scene<Dim> parse(std::string_view text, const std::string& name,
   return Reader<Dim>(root, name, folder).read();
 }
 
+}  // namespace
+
+int scene_dimension(const std::filesystem::path& file) {
+  return dimension_of(detail::parse_toml(read_file(file), called(file)), called(file));
+}
+
 template <int Dim>
 Scene<Dim> parse_scene(std::string_view text, const std::string& name) {
-  return parse<Dim>(text, name, "");
+  return parse<Dim>(text, name, {});
 }
 
 template <int Dim>
 Scene<Dim> read_scene(const std::filesystem::path& file) {
-  return parse<Dim>(whole_file(file), called(file), file.parent_path());
+  return parse<Dim>(read_file(file), called(file), file.parent_path());
 }
 
 template Scene<2> read_scene<2>(const std::filesystem::path&);

@@ -127,6 +127,7 @@ class Writer {
     }
     for (const Fill<Dim>& fill : scene_.fills) write_fill(fill);
     for (const PlacedGrain<Dim>& grain : scene_.grains) write_grain(grain);
+    for (const GrainFile<Dim>& grains : scene_.grain_files) write_grain_file(grains);
     for (const Wall<Dim>& wall : scene_.walls) write_wall(wall);
     write_output();
     return std::move(out_).text();
@@ -212,6 +213,15 @@ class Writer {
     } else {
       out_.add(keys::kSpin, grain.spin);
     }
+  }
+
+  void write_grain_file(const GrainFile<Dim>& grains) {
+    one_of(keys::kGrains);
+    out_.add(keys::kFile, std::string_view(grains.file.string()));
+    if (grains.material) out_.add(keys::kMaterial, material_name(*grains.material));
+    out_.add(keys::kShift, grains.shift);
+    out_.add(keys::kAtRest, grains.at_rest);
+    out_.add(keys::kPinned, grains.pinned);
   }
 
   void write_wall(const Wall<Dim>& wall) {

@@ -163,7 +163,7 @@ TEST_SUITE("program") {
           "a time, got \"fast\"\n");
     CHECK(refused("s.toml", with(kHeap, "[0.05, 0.4]", "[0.05, 0.33]")) ==
           "lagrain: s.toml:28: grain[1]: overlaps grain[0] by 50 % of the smaller radius (limit 1 "
-          "%)\n");
+          "%); largest_initial_overlap allows more\n");
     CHECK(holds(refused("s.toml", with(kHeap, "1/25 contact", "1/2 contact")), "allows at most"));
     CHECK(holds(
         refused("s.toml", with(kHeap, "count = 12", "count = 1000\narrangement = \"random\"")),

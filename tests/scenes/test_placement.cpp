@@ -267,11 +267,13 @@ TEST_SUITE("placement") {
 
   TEST_CASE("grains that overlap at the start are named, with the overlap") {
     CHECK(message_of(with(kHeap, "[0.05, 0.4]", "[0.05, 0.33]")) ==
-          "s.toml:28: grain[1]: overlaps grain[0] by 50 % of the smaller radius (limit 1 %)");
+          "s.toml:28: grain[1]: overlaps grain[0] by 50 % of the smaller radius (limit 1 %); "
+          "largest_initial_overlap allows more");
     CHECK(message_of("largest_initial_overlap = 0.6\n" +
                      with(kHeap, "[0.05, 0.4]", "[0.05, 0.33]")) == "accepted");
     CHECK(message_of(with(kHeap, "[0.05, 0.3]", "[0.01, 0.3]")) ==
-          "s.toml:24: grain[0]: overlaps wall \"left\" by 50 % of the smaller radius (limit 1 %)");
+          "s.toml:24: grain[0]: overlaps wall \"left\" by 50 % of the smaller radius (limit 1 %); "
+          "largest_initial_overlap allows more");
     CHECK(message_of(with(kHeap, "[0.05, 0.3]", "[0.05, -0.3]")) ==
           "s.toml:24: grain[0]: lies behind wall \"floor\"");
   }

@@ -133,7 +133,7 @@ TEST_SUITE("scene") {
     CHECK(message_of(with(kHeap, "density = 2000", "")) ==
           "s.toml:19: fill[0].material: grains of \"gravel\" need [materials.gravel] density");
     CHECK(message_of(kHeap.substr(0, kHeap.find("[[fill]]"))) ==
-          "s.toml: no grains: expected at least one [[fill]] or [[grain]]");
+          "s.toml: no grains: expected at least one [[fill]], [[grain]] or [[grains]]");
   }
 
   TEST_CASE("a key that the model does not use is an error") {
@@ -173,8 +173,8 @@ TEST_SUITE("scene") {
     CHECK_THROWS_WITH_AS(read_scene<2>("no/such/file.toml"), "no/such/file.toml: cannot be read",
                          SceneError);
     const std::string here = std::filesystem::temp_directory_path().string();
-    CHECK_THROWS_WITH_AS(read_scene<2>(here),
-                         (here + ": expected a scene file, got a folder").c_str(), SceneError);
+    CHECK_THROWS_WITH_AS(read_scene<2>(here), (here + ": expected a file, got a folder").c_str(),
+                         SceneError);
   }
 
   TEST_CASE("walls are half-planes, segments or circles, each with a motion") {

@@ -140,6 +140,8 @@ high = [1, 1]
 [[grain]]
 position = [3, 3]
 radius = 0.01
+[[grains]]
+file = "bed.csv"
 [[wall]]
 point = [0, 0]
 normal = [0, 1]
@@ -274,7 +276,7 @@ TEST_SUITE("scene page") {
     const Page page = read_page();
     const std::set<std::string> keys = all_keys();
     REQUIRE(keys.size() > 50);
-    REQUIRE(page.tables.size() == 15);
+    REQUIRE(page.tables.size() == 16);
     std::set<std::string> explained;
     for (const auto& table : page.tables) {
       const std::string& path = table.first;

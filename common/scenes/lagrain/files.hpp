@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// Files that are there whole or not at all, and files that grow.
+/// Reading a file; files that are there whole or not at all, and files that grow.
 
 #include <filesystem>
 #include <fstream>
+#include <string>
 #include <string_view>
 
 namespace lagrain {
+
+/// All of a file.
+/// @throws SceneError if it is a folder or cannot be read
+std::string read_file(const std::filesystem::path& file);
 
 /// Writes a file whole or not at all, through a neighbour that is renamed.
 /// @throws SceneError if that is not possible

@@ -4,6 +4,7 @@
 /// `record` writes the folder of a run.
 ///
 ///     scene.toml       the scene with every default filled in; reads back to the same run
+///     grains_N.csv     copies of the files of grains that it reads, if it reads any
 ///     series.csv       energies, contacts, overlaps and wall forces against time
 ///     frames.csv       number, step and time of each frame
 ///     frames/NNNN.csv  the grains; contacts/NNNN.csv beside it if the scene asks for contacts

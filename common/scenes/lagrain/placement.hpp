@@ -10,11 +10,12 @@
 
 namespace lagrain {
 
-/// The grains of a scene at time 0: those placed by hand first, then the fills in order.
+/// The grains of a scene at time 0: those placed by hand, those of files, then the fills, in
+/// order.
 template <int Dim>
 struct Placement {
   std::vector<Grain<Dim>> grains;  ///< N
-  std::vector<int> group;  ///< N: index into the scene's fills; -1 for a grain placed by hand
+  std::vector<int> group;  ///< N: index into the scene's fills; -1 for a grain by hand or of a file
 };
 
 /// Places the grains and checks them.
@@ -28,7 +29,8 @@ struct Placement {
 ///
 /// @throws SceneError if a region does not hold its grains (the message says how many a lattice
 /// held, or which solid fraction was asked for and what the limit is), or if grains placed by hand
-/// overlap each other or a wall by more than the scene allows
+/// or listed in files overlap each other or a wall by more than the scene allows, or if a file of
+/// grains cannot be read or is wrong (the message names file, line and column)
 template <int Dim>
 Placement<Dim> place_grains(const Scene<Dim>& scene);
 

@@ -90,6 +90,17 @@ struct PlacedGrain {
   bool pinned = false;                       ///< stays where it is
 };
 
+/// Grains that a file of comma-separated values lists. It is read when the grains are placed.
+template <int Dim>
+struct GrainFile {
+  std::filesystem::path file;  ///< as the program finds it
+  /// Place among the materials; none: the file's column says it, or there is only one.
+  std::optional<int> material;
+  Vec<Dim> shift = Vec<Dim>::Zero();  ///< added to every place in the file [m]
+  bool at_rest = false;               ///< without the file's velocities and spins
+  bool pinned = false;                ///< all of them stay where they are
+};
+
 /// A time step [s], or a fraction of the shortest contact time.
 struct TimeStep {
   double fraction_of_contact = 1.0 / 25;  ///< used if `seconds` is 0
@@ -124,13 +135,14 @@ struct Scene {
   bool audit = false;     ///< whether contacts are searched from nothing now and then
   int audit_every = 100;  ///< steps, above 1,000 grains
 
-  LawNumbers law;                        ///< the numbers of the law
-  std::vector<PairLaw> pairs;            ///< between materials
-  std::vector<Material> materials;       ///< all that occur
-  std::vector<Fill<Dim>> fills;          ///< groups of grains
-  std::vector<PlacedGrain<Dim>> grains;  ///< placed by hand
-  std::vector<Wall<Dim>> walls;          ///< single ones, then the sides of boxes
-  OutputPlan output;                     ///< what is written
+  LawNumbers law;                           ///< the numbers of the law
+  std::vector<PairLaw> pairs;               ///< between materials
+  std::vector<Material> materials;          ///< all that occur
+  std::vector<Fill<Dim>> fills;             ///< groups of grains
+  std::vector<PlacedGrain<Dim>> grains;     ///< placed by hand
+  std::vector<GrainFile<Dim>> grain_files;  ///< listed in files
+  std::vector<Wall<Dim>> walls;             ///< single ones, then the sides of boxes
+  OutputPlan output;                        ///< what is written
 
   /// "file:line: key: message", with what is known of it.
   SceneError error(const std::string& key, const std::string& message) const {
@@ -150,12 +162,14 @@ struct Scene {
 /// @throws SceneError if the file cannot be read, is not TOML, or names none
 int scene_dimension(const std::filesystem::path& file);
 
-/// Reads a scene file; every number is checked, the grains are not placed yet.
+/// Reads a scene file; every number is checked, the grains are not placed yet. Paths in it begin in
+/// its folder.
 /// @throws SceneError: one sentence with file, line, key, what was expected and what was found
 template <int Dim>
 Scene<Dim> read_scene(const std::filesystem::path& file);
 
-/// The same from text; `name` stands for the file in messages.
+/// The same from text; `name` stands for the file in messages, and paths begin where the program
+/// runs.
 template <int Dim>
 Scene<Dim> parse_scene(std::string_view text, const std::string& name);
 
