@@ -95,6 +95,71 @@ class Occupied {
       cells_;  // a key shared by accident only costs
 };
 
+/// The largest radius of a law [m].
+double largest(const RadiusLaw& law) {
+  if (const auto* r = std::get_if<double>(&law)) return *r;
+  if (const auto* u = std::get_if<UniformRadius>(&law)) return u->high;
+  if (const auto* s = std::get_if<SieveCurve>(&law)) return s->openings.back() / 2;
+  const auto& listed = std::get<ListedRadius>(law);
+  return *std::max_element(listed.values.begin(), listed.values.end());
+}
+
+/// Draws radii from a law. Masses go with radius^Dim: grains of one fill have one density.
+template <int Dim>
+class RadiusDraw {
+ public:
+  explicit RadiusDraw(const RadiusLaw& law) : law_(law) {
+    if (const auto* listed = std::get_if<ListedRadius>(&law)) {
+      numbers_ = listed->weights;
+      if (listed->by == Share::number) return;
+      const double unit = *std::min_element(listed->values.begin(), listed->values.end());
+      for (std::size_t k = 0; k < numbers_.size(); ++k) {
+        numbers_[k] *= std::pow(unit / listed->values[k], Dim);
+      }
+    } else if (const auto* curve = std::get_if<SieveCurve>(&law)) {
+      const double unit = curve->openings.front();
+      for (std::size_t k = 0; k + 1 < curve->openings.size(); ++k) {
+        const double a = unit / curve->openings[k];
+        const double b = unit / curve->openings[k + 1];
+        // The mean of 1 / radius^Dim between the two: the number of grains in a unit of mass.
+        const double mean = Dim == 2 ? a * b : 0.5 * (a + b) * a * b;
+        numbers_.push_back((curve->passing[k + 1] - curve->passing[k]) * mean);
+      }
+    }
+  }
+
+  double operator()(Random& random) const {
+    if (const auto* r = std::get_if<double>(&law_)) return *r;
+    if (const auto* u = std::get_if<UniformRadius>(&law_)) {
+      return u->by == Share::number ? random.uniform(u->low, u->high)
+                                    : uniform_in_mass(u->low, u->high, random);
+    }
+    const std::size_t k = pick(random);
+    if (const auto* listed = std::get_if<ListedRadius>(&law_)) return listed->values[k];
+    const auto& openings = std::get<SieveCurve>(law_).openings;
+    return uniform_in_mass(openings[k] / 2, openings[k + 1] / 2, random);
+  }
+
+ private:
+  std::size_t pick(Random& random) const {
+    double left = random.uniform() * std::accumulate(numbers_.begin(), numbers_.end(), 0.0);
+    std::size_t k = 0;
+    while (k + 1 < numbers_.size() && left >= numbers_[k]) left -= numbers_[k++];
+    return k;
+  }
+
+  /// The number of grains between r and r + dr goes with dr / r^Dim, so that r^(1 - Dim) is uniform.
+  static double uniform_in_mass(double low, double high, Random& random) {
+    constexpr int kPower = Dim - 1;
+    const double end = std::pow(low / high, kPower);
+    const double ratio = std::pow(1 - random.uniform() * (1 - end), -1.0 / kPower);
+    return std::min(low * ratio, high);
+  }
+
+  const RadiusLaw& law_;
+  std::vector<double> numbers_;  // relative ones, of the values of a list or between two sieves
+};
+
 template <int Dim>
 class Placer {
  public:
@@ -114,13 +179,6 @@ class Placer {
   }
 
  private:
-  static double largest(const RadiusLaw& law) {
-    if (const auto* r = std::get_if<double>(&law)) return *r;
-    if (const auto* u = std::get_if<UniformRadius>(&law)) return u->high;
-    const auto& listed = std::get<ListedRadius>(law);
-    return *std::max_element(listed.values.begin(), listed.values.end());
-  }
-
   static std::vector<detail::ListedGrains<Dim>> read_files(const Scene<Dim>& scene) {
     std::vector<detail::ListedGrains<Dim>> files;
     for (std::size_t k = 0; k < scene.grain_files.size(); ++k) {
@@ -153,17 +211,6 @@ class Placer {
       if (alone) small = std::min(small, grain.radius);
     }
     return std::max(2 * small, large / 50);
-  }
-
-  static double draw(const RadiusLaw& law, Random& random) {
-    if (const auto* r = std::get_if<double>(&law)) return *r;
-    if (const auto* u = std::get_if<UniformRadius>(&law)) return random.uniform(u->low, u->high);
-    const auto& listed = std::get<ListedRadius>(law);
-    double left =
-        random.uniform() * std::accumulate(listed.weights.begin(), listed.weights.end(), 0.0);
-    std::size_t k = 0;
-    while (k + 1 < listed.values.size() && left >= listed.weights[k]) left -= listed.weights[k++];
-    return listed.values[k];
   }
 
   static Vec<Dim> direction(Random& random) {
@@ -280,6 +327,7 @@ class Placer {
 
   int fill_lattice(const Fill<Dim>& f, int group, Random& random) {
     const double width = 2 * largest(f.radius) * kSpacing;
+    const RadiusDraw<Dim> draw(f.radius);
     std::array<std::int64_t, Dim> shape;
     std::array<std::int64_t, Dim> at{};
     for (std::size_t d = 0; d < Dim; ++d) {
@@ -290,7 +338,7 @@ class Placer {
     }
     int held = 0;
     for (bool more = true; more && !(f.count && held == *f.count);) {
-      const double r = draw(f.radius, random);
+      const double r = draw(random);
       Vec<Dim> x;
       for (std::size_t d = 0; d < Dim; ++d) {
         const auto k = static_cast<Eigen::Index>(d);
@@ -311,8 +359,9 @@ class Placer {
   }
 
   void fill_at_random(const Fill<Dim>& f, int group, Random& random) {
+    const RadiusDraw<Dim> draw(f.radius);
     std::vector<double> radii(static_cast<std::size_t>(*f.count));
-    for (double& r : radii) r = draw(f.radius, random);
+    for (double& r : radii) r = draw(random);
     std::sort(radii.begin(), radii.end(), std::greater<>());
     const std::string asked = refuse_beyond_densest(f, group, radii);
     bool full = false;

@@ -80,6 +80,9 @@ inline constexpr Key kRadius{"radius", kLength, Range::positive};
 inline constexpr Key kUniform{"uniform", kLength, Range::positive};
 inline constexpr Key kValues{"values", kLength, Range::positive};
 inline constexpr Key kWeights{"weights", kNumber, Range::not_negative};
+inline constexpr Key kBy{"by"};
+inline constexpr Key kSieves{"sieves", kLength, Range::positive};
+inline constexpr Key kPassing{"passing", kNumber, Range::not_negative};
 inline constexpr Key kRegion{"region"};
 inline constexpr Key kLow{"low", kLength};
 inline constexpr Key kHigh{"high", kLength};
@@ -163,6 +166,9 @@ inline constexpr std::array kNeighbourhoodWords{
     Word<NeighbourhoodModel>{"all pairs", NeighbourhoodModel::all_pairs}};
 inline constexpr std::array kArrangementWords{Word<Arrangement>{"lattice", Arrangement::lattice},
                                               Word<Arrangement>{"random", Arrangement::random}};
+
+inline constexpr std::array kShareWords{Word<Share>{"number", Share::number},
+                                        Word<Share>{"mass", Share::mass}};
 
 /// How a wall can move; a wall without a motion is fixed.
 enum class MotionType { steady, shake, path, piston };

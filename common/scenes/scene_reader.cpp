@@ -132,32 +132,66 @@ Model law_word(TomlTable& s, const Key& key, const std::array<LawDescription, N>
   return static_cast<Model>(s.word(key, words));
 }
 
+RadiusLaw read_uniform_radius(TomlTable& s) {
+  const auto bounds = s.numbers(keys::kUniform);
+  if (bounds.size() != 2 || bounds[0] > bounds[1]) {
+    s.expected(keys::kUniform, "[smallest, largest]");
+  }
+  for (const Key& key : {keys::kValues, keys::kSieves, keys::kPassing}) {
+    s.refuse(key, "either uniform, or values, or sieves and passing");
+  }
+  s.refuse(keys::kWeights, "weights belong to values");
+  return UniformRadius{bounds[0], bounds[1],
+                       s.word<Share>(keys::kBy, detail::kShareWords, Share::number)};
+}
+
+RadiusLaw read_listed_radius(TomlTable& s) {
+  ListedRadius listed;
+  listed.values = s.numbers(keys::kValues);
+  listed.weights = s.has(keys::kWeights) ? s.numbers(keys::kWeights)
+                                         : std::vector<double>(listed.values.size(), 1.0);
+  if (listed.weights.size() != listed.values.size() ||
+      std::accumulate(listed.weights.begin(), listed.weights.end(), 0.0) <= 0) {
+    s.fail(keys::kWeights, "expected as many weights as values, not all 0");
+  }
+  for (const Key& key : {keys::kSieves, keys::kPassing}) {
+    s.refuse(key, "either values, or sieves and passing");
+  }
+  listed.by = s.word<Share>(keys::kBy, detail::kShareWords, listed.by);
+  return listed;
+}
+
+RadiusLaw read_sieve_curve(TomlTable& s) {
+  SieveCurve curve{s.numbers(keys::kSieves), s.numbers(keys::kPassing)};
+  const auto& openings = curve.openings;
+  const auto& passing = curve.passing;
+  if (openings.size() < 2 || std::adjacent_find(openings.begin(), openings.end(),
+                                                std::greater_equal<>()) != openings.end()) {
+    s.expected(keys::kSieves, "the openings of two or more sieves, each wider than the one before");
+  }
+  if (passing.size() != openings.size() || passing.front() != 0 || passing.back() != 1 ||
+      !std::is_sorted(passing.begin(), passing.end())) {
+    s.expected(keys::kPassing, "as many shares as sieves, rising from 0 to 1");
+  }
+  s.refuse(keys::kWeights, "weights belong to values");
+  s.refuse(keys::kBy, "what passes a sieve is a share of the mass; remove this line");
+  return curve;
+}
+
 RadiusLaw read_radius(TomlTable& s) {
   if (!s.holds_table(keys::kRadius)) return s.number(keys::kRadius);
   TomlTable inner = s.table(keys::kRadius);
-  if (!inner.has(keys::kUniform) && !inner.has(keys::kValues)) {
-    inner.finish();
-    s.fail(keys::kRadius, "expected uniform = [low, high] or values = [...]");
-  }
   RadiusLaw law;
   if (inner.has(keys::kUniform)) {
-    const auto bounds = inner.numbers(keys::kUniform);
-    if (bounds.size() != 2 || bounds[0] > bounds[1]) {
-      inner.expected(keys::kUniform, "[smallest, largest]");
-    }
-    inner.refuse(keys::kValues, "either uniform or values");
-    inner.refuse(keys::kWeights, "weights belong to values");
-    law = UniformRadius{bounds[0], bounds[1]};
+    law = read_uniform_radius(inner);
+  } else if (inner.has(keys::kValues)) {
+    law = read_listed_radius(inner);
+  } else if (inner.has(keys::kSieves)) {
+    law = read_sieve_curve(inner);
   } else {
-    ListedRadius listed;
-    listed.values = inner.numbers(keys::kValues);
-    listed.weights = inner.has(keys::kWeights) ? inner.numbers(keys::kWeights)
-                                               : std::vector<double>(listed.values.size(), 1.0);
-    if (listed.weights.size() != listed.values.size() ||
-        std::accumulate(listed.weights.begin(), listed.weights.end(), 0.0) <= 0) {
-      s.fail(keys::kRadius, "expected as many weights as values, not all 0");
-    }
-    law = std::move(listed);
+    inner.finish();
+    s.fail(keys::kRadius,
+           "expected uniform = [low, high], values = [...], or sieves = [...] and passing = [...]");
   }
   inner.finish();
   return law;

@@ -174,19 +174,29 @@ class Writer {
     out_.add(keys::kName, std::string_view(fill.name));
     out_.add(keys::kMaterial, material_name(fill.material));
     if (fill.count) out_.add(keys::kCount, *fill.count);
-    std::visit(
-        Overloaded{
-            [&](double radius) { out_.add(keys::kRadius, radius); },
-            [&](const UniformRadius& law) {
-              out_.as_it_is(keys::kRadius,
-                            Inline{}.add(keys::kUniform, std::array{law.low, law.high}).text());
-            },
-            [&](const ListedRadius& law) {
-              out_.as_it_is(
-                  keys::kRadius,
-                  Inline{}.add(keys::kValues, law.values).add(keys::kWeights, law.weights).text());
-            }},
-        fill.radius);
+    std::visit(Overloaded{[&](double radius) { out_.add(keys::kRadius, radius); },
+                          [&](const UniformRadius& law) {
+                            out_.as_it_is(keys::kRadius,
+                                          Inline{}
+                                              .add(keys::kUniform, std::array{law.low, law.high})
+                                              .add(keys::kBy, text_of(detail::kShareWords, law.by))
+                                              .text());
+                          },
+                          [&](const ListedRadius& law) {
+                            out_.as_it_is(keys::kRadius,
+                                          Inline{}
+                                              .add(keys::kValues, law.values)
+                                              .add(keys::kWeights, law.weights)
+                                              .add(keys::kBy, text_of(detail::kShareWords, law.by))
+                                              .text());
+                          },
+                          [&](const SieveCurve& law) {
+                            out_.as_it_is(keys::kRadius, Inline{}
+                                                             .add(keys::kSieves, law.openings)
+                                                             .add(keys::kPassing, law.passing)
+                                                             .text());
+                          }},
+               fill.radius);
     out_.as_it_is(keys::kRegion,
                   Inline{}.add(keys::kLow, fill.low).add(keys::kHigh, fill.high).text());
     out_.add(keys::kArrangement, text_of(detail::kArrangementWords, fill.arrangement));

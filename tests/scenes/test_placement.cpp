@@ -9,6 +9,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -88,9 +90,102 @@ std::string refusal_of(const Scene<Dim>& scene) {
   return scene_error_of([&] { place_grains(scene); });
 }
 
+/// Radii of many grains that follow a law [m].
+template <int Dim>
+std::vector<double> many_radii(const RadiusLaw& law) {
+  Scene<Dim> scene;
+  scene.materials = {{"rock", 1000}};
+  Fill<Dim> fill;
+  fill.count = 40'000;
+  fill.radius = law;
+  fill.high.setConstant(Dim == 2 ? 2.0 : 0.4);  // room for as many of 4 mm
+  scene.fills = {fill};
+  std::vector<double> radii;
+  for (const auto& grain : place_grains(scene).grains) radii.push_back(grain.radius);
+  return radii;
+}
+
+/// The share of the grains with radii in [low, high).
+double share_between(const std::vector<double>& radii, double low, double high) {
+  return static_cast<double>(std::count_if(radii.begin(), radii.end(),
+                                           [&](double r) { return r >= low && r < high; })) /
+         static_cast<double>(radii.size());
+}
+
+/// Whether a share of many draws agrees with its probability, to four standard deviations.
+bool agrees(double share, double probability, std::size_t draws) {
+  return std::abs(share - probability) <=
+         4 * std::sqrt(probability * (1 - probability) / static_cast<double>(draws));
+}
+
 }  // namespace
 
 TEST_SUITE("placement") {
+  TEST_CASE_TEMPLATE("sizes shared by mass: so many small grains that the masses are as asked", S,
+                     Space<2>, Space<3>) {
+    constexpr int Dim = S::Dim;
+    const std::vector<double> sizes{0.001, 0.002, 0.004};
+    const std::vector<double> masses{1, 1, 2};
+
+    const auto by_number = many_radii<Dim>(ListedRadius{sizes, masses, Share::number});
+    const auto by_mass = many_radii<Dim>(ListedRadius{sizes, masses, Share::mass});
+
+    // Numbers go with mass / radius^Dim: 16 : 4 : 2 in the plane, 64 : 8 : 2 in space.
+    const std::vector<double> expected = Dim == 2
+                                             ? std::vector<double>{16.0 / 22, 4.0 / 22, 2.0 / 22}
+                                             : std::vector<double>{64.0 / 74, 8.0 / 74, 2.0 / 74};
+    for (std::size_t k = 0; k < sizes.size(); ++k) {
+      CAPTURE(sizes[k]);
+      const double next = sizes[k] * 1.1;
+      CHECK(agrees(share_between(by_number, sizes[k], next), masses[k] / 4, by_number.size()));
+      CHECK(agrees(share_between(by_mass, sizes[k], next), expected[k], by_mass.size()));
+    }
+  }
+
+  TEST_CASE_TEMPLATE("sizes uniform in mass: the mass below a radius grows evenly with it", S,
+                     Space<2>, Space<3>) {
+    constexpr int Dim = S::Dim;
+    const double low = 0.001;
+    const double high = 0.004;
+    const auto radii = many_radii<Dim>(UniformRadius{low, high, Share::mass});
+    // The number of grains between a and b goes with the integral of dr / r^Dim.
+    const auto number = [](double a, double b) {
+      return Dim == 2 ? 1 / a - 1 / b : 0.5 * (1 / (a * a) - 1 / (b * b));
+    };
+    CHECK(*std::min_element(radii.begin(), radii.end()) >= low);
+    CHECK(*std::max_element(radii.begin(), radii.end()) <= high);
+    for (const double r : {0.0012, 0.002, 0.003}) {
+      CAPTURE(r);
+      CHECK(agrees(share_between(radii, low, r), number(low, r) / number(low, high), radii.size()));
+    }
+    double whole = 0;
+    double below = 0;
+    for (const double r : radii) {
+      whole += std::pow(r, Dim);
+      if (r < 0.5 * (low + high)) below += std::pow(r, Dim);
+    }
+    CHECK(relative_error(below / whole, 0.5) < 0.03);
+  }
+
+  TEST_CASE_TEMPLATE("a sieve curve is what sieves would find", S, Space<2>, Space<3>) {
+    constexpr int Dim = S::Dim;
+    const SieveCurve curve{{0.002, 0.003, 0.006, 0.008}, {0, 0.25, 0.25, 1}};
+    const auto radii = many_radii<Dim>(curve);
+
+    // Means of 1 / radius^Dim in units of mm: 1 / (a b) or (a + b) / (2 a^2 b^2).
+    const double fine = 0.25 * (Dim == 2 ? 1 / 1.5 : 2.5 / (2 * 2.25));
+    const double coarse = 0.75 * (Dim == 2 ? 1 / 12.0 : 7 / (2 * 144.0));
+    CHECK(agrees(share_between(radii, 0.001, 0.0015), fine / (fine + coarse), radii.size()));
+    CHECK(share_between(radii, 0.0015, 0.003) == 0);
+    double whole = 0;
+    double through = 0;
+    for (const double r : radii) {
+      whole += std::pow(r, Dim);
+      if (2 * r < curve.openings[1]) through += std::pow(r, Dim);
+    }
+    CHECK(relative_error(through / whole, 0.25) < 0.03);
+  }
+
   TEST_CASE("lattices and random arrangements are disjoint, inside, and leave room for others") {
     check_disjoint_and_inside(box<2>(Arrangement::lattice, 60));
     check_disjoint_and_inside(box<2>(Arrangement::random, 80));

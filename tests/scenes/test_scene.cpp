@@ -280,6 +280,50 @@ TEST_SUITE("scene") {
           "the piston as a [[wall]]");
   }
 
+  TEST_CASE("sizes by mass and sieve curves are read, written and checked") {
+    const auto sizes = [](const std::string& law) {
+      return with(kHeap, "{ uniform = [\"8 mm\", \"10 mm\"] }", "{ " + law + " }");
+    };
+    const auto read = [&](const std::string& law) {
+      const Scene<2> scene = parse_scene<2>(sizes(law), "s.toml");
+      CHECK(to_toml(parse_scene<2>(to_toml(scene), "s.toml")) == to_toml(scene));
+      return scene.fills.at(0).radius;
+    };
+    CHECK(std::get<UniformRadius>(read("uniform = [1, 2]")).by == Share::number);
+    CHECK(std::get<UniformRadius>(read("uniform = [1, 2], by = \"mass\"")).by == Share::mass);
+    CHECK(std::get<ListedRadius>(read("values = [1, 2], by = \"mass\"")).by == Share::mass);
+    const auto curve =
+        std::get<SieveCurve>(read("sieves = [\"2 mm\", \"3 mm\", 1], passing = [0, \"30 %\", 1]"));
+    CHECK(curve.openings == std::vector<double>{0.002, 0.003, 1});
+    CHECK(curve.passing == std::vector<double>{0, 0.3, 1});
+
+    const auto refusal = [&](const std::string& law) { return message_of(sizes(law)); };
+    const std::string at = "s.toml:21: fill[0].radius.";
+    CHECK(refusal("uniform = [1, 2], by = \"volume\"") ==
+          at + "by: expected \"number\" or \"mass\", got \"volume\"");
+    CHECK(refusal("values = [1, 2], weights = [1]") ==
+          at + "weights: expected as many weights as values, not all 0");
+    CHECK(refusal("sieves = [1, 2]") == at + "passing: missing; expected a list");
+    CHECK(refusal("sieves = [1], passing = [1]") ==
+          at + "sieves: expected the openings of two or more sieves, each wider than the one "
+               "before, got [1]");
+    CHECK(refusal("sieves = [2, 1], passing = [0, 1]").starts_with(at + "sieves: expected"));
+    const std::string rising =
+        "passing: expected as many shares as sieves, rising from 0 to 1, got ";
+    CHECK(refusal("sieves = [1, 2], passing = [0.1, 1]") == at + rising + "[0.1, 1]");
+    CHECK(refusal("sieves = [1, 2], passing = [0, 2]") == at + rising + "[0, 2]");
+    CHECK(refusal("sieves = [1, 2, 3], passing = [0, 1]") == at + rising + "[0, 1]");
+    CHECK(refusal("sieves = [1, 2, 3, 4], passing = [0, 0.7, 0.6, 1]") ==
+          at + rising + "[0, 0.7, 0.6, 1]");
+    CHECK(refusal("sieves = [1, 2], passing = [0, 1], by = \"number\"") ==
+          at + "by: what passes a sieve is a share of the mass; remove this line");
+    CHECK(refusal("uniform = [1, 2], sieves = [1, 2]") ==
+          at + "sieves: either uniform, or values, or sieves and passing");
+    CHECK(refusal("values = [1, 2], passing = [0, 1]") ==
+          at + "passing: either values, or sieves and passing");
+    CHECK(refusal("weights = [1]").starts_with("s.toml:21: fill[0].radius.weights: unknown key"));
+  }
+
   TEST_CASE("a resolved scene reads back as itself, every default filled in") {
     const std::string text =
         with(kHeap, "gravity = [0, ", "gravity = [-0.0, ") +

@@ -171,6 +171,8 @@ high = [1, 1]
       with(plain, fill, "count = 1\narrangement = \"random\"\n" + fill),
       with(plain, fill, "[fill.radius]\nuniform = [0.01, 0.02]\n[fill.region]\n"),
       with(plain, fill, "[fill.radius]\nvalues = [0.01, 0.02]\n[fill.region]\n"),
+      with(plain, fill,
+           "[fill.radius]\nsieves = [0.01, 0.02]\npassing = [0, 1]\n[fill.region]\n"),
       with(plain, fill, "radius = 0.01\n[fill.velocity]\nrandom = 1\n[fill.region]\n"),
       with(plain, plane, "from = [0, 0]\nto = [0, 1]\n"),
       with(plain, plane, "from = [0, 0]\nalong = [0, 1]\n"),

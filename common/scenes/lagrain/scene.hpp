@@ -47,20 +47,32 @@ struct Material {
   double density = 0;  ///< [kg/m^3]; 0 if only walls are made of it
 };
 
+/// Whether the shares of sizes are shares of the number of grains or of their mass.
+enum class Share { number, mass };
+
 /// Radii uniform between two bounds [m].
 struct UniformRadius {
-  double low = 0;   ///< [m]
-  double high = 0;  ///< [m]
+  double low = 0;            ///< [m]
+  double high = 0;           ///< [m]
+  Share by = Share::number;  ///< what is uniform
 };
 
-/// Radii [m] picked from a list; weights are relative numbers of grains.
+/// Radii [m] picked from a list.
 struct ListedRadius {
   std::vector<double> values;   ///< [m]
-  std::vector<double> weights;  ///< one for each value; empty: all alike
+  std::vector<double> weights;  ///< relative share of each value
+  Share by = Share::number;     ///< of what
+};
+
+/// Radii as sieves find them: a sieve lets through what is smaller than its openings. Between two
+/// sieves the mass is uniform over the sizes.
+struct SieveCurve {
+  std::vector<double> openings;  ///< diameters, rising [m]
+  std::vector<double> passing;   ///< share of the mass that passes each sieve, from 0 to 1 [-]
 };
 
 /// One radius [m], or a law of many.
-using RadiusLaw = std::variant<double, UniformRadius, ListedRadius>;
+using RadiusLaw = std::variant<double, UniformRadius, ListedRadius, SieveCurve>;
 
 /// How a fill places its grains.
 enum class Arrangement { lattice, random };
