@@ -29,20 +29,27 @@ struct DeepOverlap {
   int partner = -1;        ///< slot of the other grain, or the wall's place among the walls
   bool with_wall = false;  ///< whether the partner is a wall
   double closing = 0;      ///< how fast they approach [m/s]
+  double impact = 0;       ///< speed of the free impact that has the contact's energy [m/s]
   double stiffer = 0;      ///< what missing_stiffness says [-]
 };
 
+/// What the spring of a contact holds, and what it has not stopped yet [J].
+template <int Dim, class Law>
+double energy_to_hold(const Law& law, const Touch<Dim>& touch) {
+  const typename Law::template Memory<Dim> unstretched{};
+  const double closing = std::max(0.0, touch.closing);
+  return law.elastic_energy(touch, unstretched) + 0.5 * touch.effective_mass * closing * closing;
+}
+
 /// How many times as stiff a contact has to be if its overlap is to stay below a limit [-]: then
-/// the springs hold at the limit what they hold now, and what they have not stopped yet. (The
-/// energy of a spring goes with its stiffness.)
+/// the spring holds at the limit all that it has to hold. (The energy of a spring goes with its
+/// stiffness.)
 /// @param touch  the contact as it is
 /// @param limit  overlap [m]
 template <int Dim, class Law>
 double missing_stiffness(const Law& law, Touch<Dim> touch, double limit) {
   const typename Law::template Memory<Dim> unstretched{};
-  const double closing = std::max(0.0, touch.closing);
-  const double to_hold =
-      law.elastic_energy(touch, unstretched) + 0.5 * touch.effective_mass * closing * closing;
+  const double to_hold = energy_to_hold(law, touch);
   touch.overlap = limit;
   return to_hold / law.elastic_energy(touch, unstretched);
 }
@@ -64,6 +71,7 @@ void note_deepest(DeepOverlap& deepest, const PairTable<P, Memory>& table,
                partner,
                with_wall,
                touch.closing,
+               std::sqrt(2 * energy_to_hold(law, touch) / touch.effective_mass),
                missing_stiffness(law, touch, scene.largest_overlap * smaller)};
   };
   for (std::size_t k = 0; k < table.size(); ++k) {
@@ -104,7 +112,10 @@ template <int Dim, class NumberOf>
   std::ostringstream message;
   message << "t = " << t << " s: grain " << grain << " overlaps " << other << " by "
           << deepest.ratio << " of the smaller radius (largest_overlap is " << limit << ")";
-  if (deepest.closing > 0) message << " and goes on at " << deepest.closing << " m/s";
+  if (deepest.closing > 0) {
+    message << " and goes on at " << deepest.closing << " m/s, with the energy of an impact at "
+            << deepest.impact << " m/s";
+  }
   message << "; ";
   if (deepest.stiffer > 1 && std::isfinite(deepest.stiffer)) {
     message << "a contact " << deepest.stiffer << " times as stiff would hold it, or ";

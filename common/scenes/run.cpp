@@ -6,6 +6,7 @@
 #include <lagrain/all_pairs.hpp>
 #include <lagrain/cell_grid.hpp>
 #include <lagrain/numbers.hpp>
+#include <lagrain/overlap_estimate.hpp>
 #include <lagrain/triangulation2.hpp>
 #include <lagrain/triangulation3.hpp>
 
@@ -133,7 +134,7 @@ template <int Dim>
 std::string explain(const Run<Dim>& run) {
   const Scene<Dim>& scene = run.scene();
   std::string out;
-  const auto line = [&](const char* name, const std::string& value) {
+  const auto line = [&](const std::string& name, const std::string& value) {
     out += padded(name, 16) + value + "\n";
   };
   const TimeScales scales = run.time_scales();
@@ -153,6 +154,25 @@ std::string explain(const Run<Dim>& run) {
   } else {
     line("contact time", "none: nothing in the scene can move");
     line("time step", rounded(run.time_step()) + " s");
+  }
+  const OverlapEstimate guess = estimate_overlap(run);
+  if (guess.stiffness > 0) {
+    const auto percent = [](double overlap) { return rounded(100 * overlap) + " %"; };
+    const LawKey& stiffness = description_of(scene.normal).keys[0];
+    const bool walls_move = std::any_of(run.walls().begin(), run.walls().end(),
+                                        [](const Wall<Dim>& wall) { return wall.moves(); });
+    line("overlap", "about " + percent(guess.overlap()) +
+                        " of the smaller radius, to a factor of 2" +
+                        (walls_move ? ", walls that move left out" : ""));
+    line("  of weight", percent(guess.overlap_of_load) + ", the heaviest column presses with " +
+                            rounded(guess.load) + " N");
+    line("  of impact", percent(guess.overlap_of_impact) + ", the deepest one at " +
+                            rounded(guess.speed) + " m/s");
+    line("for " + percent(kSoundOverlap), std::string(stiffness.name) + " = \"" +
+                                              rounded(guess.stiffness) + " " +
+                                              std::string(stiffness.unit) + "\"");
+  } else {
+    line("overlap", "none to be guessed: at the start nothing moves or weighs");
   }
   line("steps", std::to_string(run.steps_planned()) + " for " + rounded(scene.duration) + " s");
   const ModelSize size = run.size();

@@ -240,6 +240,14 @@ TEST_SUITE("simulation") {
     CHECK(of_pair.find("largest_overlap is 0.3") != std::string::npos);
     CHECK(of_wall.find("grain 1 overlaps wall anvil") != std::string::npos);
     CHECK(of_wall.find("t = 0.01") != std::string::npos);
+    // Nothing is lost, so what is left of the speed and the spring make the impact's speed, but for
+    // what a step so large errs by.
+    for (const std::string& failure : {of_pair, of_wall}) {
+      const std::string said = "with the energy of an impact at ";
+      REQUIRE(failure.find(said) != std::string::npos);
+      CHECK(relative_error(std::stod(failure.substr(failure.find(said) + said.size())), 100) <
+            0.05);
+    }
   }
 
   TEST_CASE_TEMPLATE("a run stops when a place is not a number, and says whose and when", C,
