@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <lagrain/frame.hpp>
 
+#include "measure.hpp"
+
 namespace lagrain {
 
 template <int Dim>
@@ -35,6 +37,7 @@ std::vector<SeriesColumn> series_columns(const Run<Dim>& run) {
     }
     if (wall.turns() || wall.runs()) columns.push_back({wall.name + ".work", "J"});
   }
+  detail::add_measure_columns(run.scene(), columns);
   return columns;
 }
 
@@ -58,6 +61,7 @@ Sample sample_of(const Run<Dim>& run, const Ledger& now, const ContactStatistics
     }
     if (wall.turns() || wall.runs()) row.push_back(wall.work);
   }
+  detail::add_measures(run, row);
   return row;
 }
 

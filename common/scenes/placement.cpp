@@ -148,7 +148,7 @@ class RadiusDraw {
     return k;
   }
 
-  /// The number of grains between r and r + dr goes with dr / r^Dim, so that r^(1 - Dim) is uniform.
+  /// The number of grains between r and r + dr goes with dr / r^Dim: r^(1 - Dim) is uniform.
   static double uniform_in_mass(double low, double high, Random& random) {
     constexpr int kPower = Dim - 1;
     const double end = std::pow(low / high, kPower);

@@ -67,6 +67,7 @@ inline constexpr Key kGrain{"grain"};
 inline constexpr Key kGrains{"grains"};
 inline constexpr Key kWall{"wall"};
 inline constexpr Key kBox{"box"};
+inline constexpr Key kMeasure{"measure"};
 inline constexpr Key kOutput{"output"};
 
 inline constexpr Key kBetween{"between"};
@@ -135,6 +136,8 @@ inline constexpr Key kTurning{"turning"};
 inline constexpr Key kAbout{"about", kLength};
 inline constexpr Key kRate{"rate", kAngularVelocity};
 inline constexpr Key kAngle{"angle", detail::kAngle};
+
+inline constexpr Key kSlices{"slices"};
 
 inline constexpr Key kFramesEvery{"frames_every", kTime, Range::positive};
 inline constexpr Key kSeriesEvery{"series_every", kTime, Range::positive};

@@ -22,6 +22,7 @@ using detail::TomlTable;
 namespace keys = detail::keys;
 
 constexpr int kMostGrains = 100'000'000;
+constexpr int kMostSlices = 1000;            // each is several columns of the series
 constexpr std::size_t kMostMaterials = 255;  // a grain keeps its material in one byte
 
 /// The number before `contact`: "1/25" or "0.04".
@@ -214,6 +215,7 @@ class Reader {
     top_.for_each(keys::kGrains, [&](TomlTable& s, int) { read_grain_file(s); });
     top_.for_each(keys::kWall, [&](TomlTable& s, int index) { read_wall(s, index); });
     top_.for_each(keys::kBox, [&](TomlTable& s, int) { read_box(s); });
+    top_.for_each(keys::kMeasure, [&](TomlTable& s, int index) { read_measure(s, index); });
     read_output();
     top_.finish();
     if (scene_.fills.empty() && scene_.grains.empty() && scene_.grain_files.empty()) {
@@ -348,13 +350,7 @@ class Reader {
       fill.count = static_cast<int>(count);
     }
     fill.radius = read_radius(s);
-    TomlTable region = s.table(keys::kRegion, "{ low = [...], high = [...] }");
-    fill.low = region.template vector<Dim>(keys::kLow);
-    fill.high = region.template vector<Dim>(keys::kHigh);
-    region.finish();
-    if (!(fill.low.array() < fill.high.array()).all()) {
-      s.fail(keys::kRegion, "expected low below high in every direction");
-    }
+    read_region(s, fill.low, fill.high);
     if (s.holds_table(keys::kVelocity)) {
       TomlTable inner = s.table(keys::kVelocity);
       fill.random_speed = inner.number(keys::kRandomSpeed);
@@ -363,6 +359,16 @@ class Reader {
       fill.velocity = s.vector<Dim>(keys::kVelocity);
     }
     scene_.fills.push_back(std::move(fill));
+  }
+
+  void read_region(TomlTable& s, Vec<Dim>& low, Vec<Dim>& high) {
+    TomlTable region = s.table(keys::kRegion, "{ low = [...], high = [...] }");
+    low = region.template vector<Dim>(keys::kLow);
+    high = region.template vector<Dim>(keys::kHigh);
+    region.finish();
+    if (!(low.array() < high.array()).all()) {
+      s.fail(keys::kRegion, "expected low below high in every direction");
+    }
   }
 
   void read_grain(TomlTable& s) {
@@ -810,6 +816,25 @@ class Reader {
     m.start = s.number(keys::kStart, m.start);
     m.stop = s.number(keys::kStop, m.stop);
     if (!(m.start < m.stop)) s.fail(keys::kStop, "expected a time after start");
+  }
+
+  void read_measure(TomlTable& s, int index) {
+    MeasuredRegion<Dim> measure;
+    measure.name = s.text(keys::kName, "measure " + std::to_string(index + 1));
+    for (const MeasuredRegion<Dim>& other : scene_.measures) {
+      if (other.name == measure.name) s.fail(keys::kName, "a second \"" + measure.name + "\"");
+    }
+    read_region(s, measure.low, measure.high);
+    const std::int64_t slices = s.integer(keys::kSlices, 1, measure.slices);
+    if (slices > kMostSlices) {
+      s.expected(keys::kSlices, "at most " + std::to_string(kMostSlices) + " slices");
+    }
+    measure.slices = static_cast<int>(slices);
+    if (s.has(keys::kAxis)) {
+      const std::vector<std::string_view> axes{"x", "y", "z"};
+      measure.axis = static_cast<int>(s.word(keys::kAxis, {axes.begin(), axes.begin() + Dim}));
+    }
+    scene_.measures.push_back(std::move(measure));
   }
 
   void read_output() {

@@ -129,6 +129,7 @@ class Writer {
     for (const PlacedGrain<Dim>& grain : scene_.grains) write_grain(grain);
     for (const GrainFile<Dim>& grains : scene_.grain_files) write_grain_file(grains);
     for (const Wall<Dim>& wall : scene_.walls) write_wall(wall);
+    for (const MeasuredRegion<Dim>& measure : scene_.measures) write_measure(measure);
     write_output();
     return std::move(out_).text();
   }
@@ -354,6 +355,16 @@ class Writer {
                           }},
                wall.turning);
     if (!turning.empty()) out_.as_it_is(keys::kTurning, turning.text());
+  }
+
+  void write_measure(const MeasuredRegion<Dim>& measure) {
+    one_of(keys::kMeasure);
+    out_.add(keys::kName, std::string_view(measure.name));
+    out_.as_it_is(keys::kRegion,
+                  Inline{}.add(keys::kLow, measure.low).add(keys::kHigh, measure.high).text());
+    out_.add(keys::kSlices, measure.slices);
+    out_.add(keys::kAxis,
+             std::string_view("xyz").substr(static_cast<std::size_t>(measure.axis), 1));
   }
 
   void write_output() {

@@ -148,6 +148,10 @@ normal = [0, 1]
 [[box]]
 low = [0, 0]
 high = [1, 1]
+[[measure]]
+[measure.region]
+low = [0, 0]
+high = [1, 1]
 [output]
 )";
   const std::string plane = "point = [0, 0]\nnormal = [0, 1]\n";

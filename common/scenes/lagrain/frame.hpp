@@ -40,7 +40,8 @@ struct SeriesColumn {
 /// A row of the series: one value for each column.
 using Sample = std::vector<std::variant<std::int64_t, double>>;
 
-/// The columns of a run's series: time, energies, contacts, then force and place of the walls.
+/// The columns of a run's series: time, energies, contacts, force and place of the walls, then what
+/// the scene measures.
 template <int Dim>
 std::vector<SeriesColumn> series_columns(const Run<Dim>& run);
 

@@ -119,6 +119,16 @@ struct TimeStep {
   double seconds = 0;                     ///< [s]
 };
 
+/// A region whose stress and solid fraction are columns of the series.
+template <int Dim>
+struct MeasuredRegion {
+  std::string name;                  ///< as the scene calls it
+  Vec<Dim> low = Vec<Dim>::Zero();   ///< [m]
+  Vec<Dim> high = Vec<Dim>::Zero();  ///< [m]
+  int slices = 1;                    ///< equal parts, each measured for itself
+  int axis = Dim - 1;                ///< along which they follow each other
+};
+
 /// What a run writes, and how often.
 struct OutputPlan {
   double frames_every = 0;  ///< [s]; 0: first and last frame only
@@ -147,14 +157,15 @@ struct Scene {
   bool audit = false;     ///< whether contacts are searched from nothing now and then
   int audit_every = 100;  ///< steps, above 1,000 grains
 
-  LawNumbers law;                           ///< the numbers of the law
-  std::vector<PairLaw> pairs;               ///< between materials
-  std::vector<Material> materials;          ///< all that occur
-  std::vector<Fill<Dim>> fills;             ///< groups of grains
-  std::vector<PlacedGrain<Dim>> grains;     ///< placed by hand
-  std::vector<GrainFile<Dim>> grain_files;  ///< listed in files
-  std::vector<Wall<Dim>> walls;             ///< single ones, then the sides of boxes
-  OutputPlan output;                        ///< what is written
+  LawNumbers law;                             ///< the numbers of the law
+  std::vector<PairLaw> pairs;                 ///< between materials
+  std::vector<Material> materials;            ///< all that occur
+  std::vector<Fill<Dim>> fills;               ///< groups of grains
+  std::vector<PlacedGrain<Dim>> grains;       ///< placed by hand
+  std::vector<GrainFile<Dim>> grain_files;    ///< listed in files
+  std::vector<Wall<Dim>> walls;               ///< single ones, then the sides of boxes
+  std::vector<MeasuredRegion<Dim>> measures;  ///< columns of the series
+  OutputPlan output;                          ///< what is written
 
   /// "file:line: key: message", with what is known of it.
   SceneError error(const std::string& key, const std::string& message) const {
