@@ -282,7 +282,7 @@ TEST_SUITE("scene page") {
     const Page page = read_page();
     const std::set<std::string> keys = all_keys();
     REQUIRE(keys.size() > 50);
-    REQUIRE(page.tables.size() == 16);
+    REQUIRE(page.tables.size() == 18);
     std::set<std::string> explained;
     for (const auto& table : page.tables) {
       const std::string& path = table.first;
