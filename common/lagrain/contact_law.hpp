@@ -7,7 +7,9 @@
 #include <lagrain/dashpot.hpp>
 #include <lagrain/needs.hpp>
 #include <lagrain/touch.hpp>
+#include <lagrain/vec.hpp>
 
+#include <cmath>
 #include <concepts>
 
 namespace lagrain {
@@ -25,9 +27,10 @@ struct NoMemory {
 /// * `needs` says what grains and contacts have to store for it.
 /// * `Memory<Dim, Real>` is what a contact remembers: kReals numbers, reached by [], zero at first;
 ///   `seen_from_partner` gives what the partner's side of the contact remembers.
-/// * `respond` advances the memory by the time step [s] and returns the force [N] and the losses
-///   [J]. With time step 0, for those who only look, it changes nothing: dashpots then exert what
-///   they do at this moment (see Onset), and springs what their memory holds.
+/// * `respond` advances the memory by the time step [s] and returns the force [N], the losses [J]
+///   and, if `needs` says that it resists rolling, a moment [N m]. With time step 0, for those who
+///   only look, it changes nothing: dashpots then exert what they do at this moment (see Onset),
+///   and springs what their memory holds.
 /// * `elastic_energy` is what the springs of the contact hold [J].
 /// * `contact_time` is the duration of a free collision [s], from the effective mass [kg] and the
 ///   effective radius [m]. The time step is chosen from it.
@@ -56,6 +59,35 @@ concept ContactLaw = requires(const L law, const Touch<Dim>& touch,
 /// (discs) and 40 / 8 times (spheres) as much as a normal one does in its stiffest mode. We take
 /// the larger.
 inline constexpr double kTangentialMobility = 5;
+
+/// A vector that a contact remembers, such as the stretch of its tangential spring, follows the
+/// contact as it turns: about the normal by the twist of the step, and with the normal, whose part
+/// is dropped. The length is kept. In the plane an angle has no direction to follow.
+/// @{
+template <int Dim, class Real>
+Vec<Dim, Real> turned_with(const Vec<Dim, Real>& stretch, const Touch<Dim, Real>& touch,
+                           double time_step) {
+  using std::sqrt;
+  const Vec<Dim, Real> flat = stretch - dot(stretch, touch.normal) * touch.normal +
+                              cross<Real>(SpinVec<Dim, Real>(time_step * touch.twist), stretch);
+  const Real before = squared(stretch), after = squared(flat);
+  return select(after > Real(0), Real(sqrt(before / after)), Real(1)) * flat;
+}
+template <class Real>
+SpinVec<2, Real> turned_with(const SpinVec<2, Real>& angle, const Touch<2, Real>&, double) {
+  return angle;
+}
+/// @}
+/// v, shortened to at most `length`.
+template <class V>
+V shortened(const V& v, const typename V::Scalar& length) {
+  using std::sqrt;
+  using Real = typename V::Scalar;
+  const Real length_squared = squared(v);
+  const auto longer = length_squared > length * length;
+  if (!any(longer)) return v;
+  return select(longer, Real(length / sqrt(length_squared)), Real(1)) * v;
+}
 
 /// A law along the normal alone, which friction laws build on. `push` is the force [N], never
 /// negative, and the dashpot's loss [J] in a time step [s]; `elastic_force` is the force without

@@ -13,6 +13,7 @@
 #include <lagrain/hertz.hpp>
 #include <lagrain/hooke.hpp>
 #include <lagrain/needs.hpp>
+#include <lagrain/rolling_resistance.hpp>
 #include <lagrain/viscous_friction.hpp>
 
 #include <array>
@@ -26,6 +27,9 @@ namespace lagrain {
 /// No friction: the law is the normal law alone.
 template <class Normal>
 using Frictionless = Normal;
+/// Elastic friction that resists rolling as well.
+template <class Normal>
+using RollingFriction = RollingResistance<CundallStrack<Normal>>;
 
 /// Rows of the lists: ROW(word of the scene file, type). What follows ROW is passed on to it.
 #define LAGRAIN_NORMAL_LAWS(ROW, ...)                  \
@@ -35,7 +39,8 @@ using Frictionless = Normal;
 #define LAGRAIN_FRICTION_LAWS(ROW, ...)                    \
   ROW(none, Frictionless __VA_OPT__(, ) __VA_ARGS__)       \
   ROW(viscous, ViscousFriction __VA_OPT__(, ) __VA_ARGS__) \
-  ROW(elastic, CundallStrack __VA_OPT__(, ) __VA_ARGS__)
+  ROW(elastic, CundallStrack __VA_OPT__(, ) __VA_ARGS__)   \
+  ROW(rolling, RollingFriction __VA_OPT__(, ) __VA_ARGS__)
 
 /// The word of a row.
 #define LAGRAIN_WORD(word, Law) word,
@@ -55,6 +60,11 @@ struct LawNumbers {
   double stiffness_ratio =
       CundallStrack<LinearSpring>{}.stiffness_ratio;  ///< tangential over normal stiffness [-]
   double tangential_damping = 0;                      ///< damping ratio [-]
+  double rolling_friction = 0;                        ///< mu_r [-]
+  double twisting_friction = 0;                       ///< mu_t [-]
+  double rolling_stiffness_ratio =
+      RollingFriction<LinearSpring>{}.stiffness_ratio;  ///< rolling stiffness over k_n R_eff^2 [-]
+  double rolling_damping = 0;                           ///< damping ratio [-]
 };
 
 /// Which numbers a key accepts.
@@ -68,6 +78,7 @@ struct LawKey {
   Range range;                       ///< what it accepts
   double LawNumbers::*number;        ///< where it goes
   std::optional<double> fallback{};  ///< taken if the key is missing; none: the key is required
+  bool in_space_only = false;        ///< in the plane it is refused
 };
 
 namespace law_keys {
@@ -86,6 +97,21 @@ inline constexpr LawKey kRestitution{"restitution", "a number", "", Range::fract
 /// The key of Coulomb's coefficient.
 inline constexpr LawKey kFriction{"friction", "a number", "", Range::not_negative,
                                   &LawNumbers::friction};
+/// The keys of an elastic tangential spring.
+/// @{
+inline constexpr LawKey kElasticDamping{"tangential_damping",
+                                        "a number",
+                                        "",
+                                        Range::not_negative,
+                                        &LawNumbers::tangential_damping,
+                                        CundallStrack<LinearSpring>{}.tangential_damping_ratio};
+inline constexpr LawKey kStiffnessRatio{"stiffness_ratio",
+                                        "a number",
+                                        "",
+                                        Range::positive,
+                                        &LawNumbers::stiffness_ratio,
+                                        CundallStrack<LinearSpring>{}.stiffness_ratio};
+/// @}
 }  // namespace law_keys
 
 /// The entry of a normal law: what it is called, its keys, and how it is made from their numbers.
@@ -158,17 +184,40 @@ struct FrictionLawEntry<CundallStrack> {
   /// What people call it.
   static constexpr std::string_view kInWords = "Coulomb friction with elastic memory";
   /// The keys that it reads.
-  static constexpr std::array kKeys{
-      law_keys::kFriction,
-      LawKey{"tangential_damping", "a number", "", Range::not_negative,
-             &LawNumbers::tangential_damping,
-             CundallStrack<LinearSpring>{}.tangential_damping_ratio},
-      LawKey{"stiffness_ratio", "a number", "", Range::positive, &LawNumbers::stiffness_ratio,
-             CundallStrack<LinearSpring>{}.stiffness_ratio}};
+  static constexpr std::array kKeys{law_keys::kFriction, law_keys::kElasticDamping,
+                                    law_keys::kStiffnessRatio};
   /// The friction law over a normal law, from the numbers.
   template <class Normal>
   static CundallStrack<Normal> over(const Normal& normal, const LawNumbers& n) {
     return {normal, n.friction, n.stiffness_ratio, n.tangential_damping};
+  }
+};
+
+/// The entry of RollingFriction.
+template <>
+struct FrictionLawEntry<RollingFriction> {
+  /// What people call it.
+  static constexpr std::string_view kInWords =
+      "Coulomb friction with elastic memory and rolling resistance";
+  /// The keys that it reads. In the plane nothing twists.
+  static constexpr std::array kKeys{
+      law_keys::kFriction,
+      law_keys::kElasticDamping,
+      law_keys::kStiffnessRatio,
+      LawKey{"rolling_friction", "a number", "", Range::not_negative,
+             &LawNumbers::rolling_friction},
+      LawKey{"rolling_damping", "a number", "", Range::not_negative, &LawNumbers::rolling_damping,
+             RollingFriction<LinearSpring>{}.damping_ratio},
+      LawKey{"rolling_stiffness_ratio", "a number", "", Range::positive,
+             &LawNumbers::rolling_stiffness_ratio, RollingFriction<LinearSpring>{}.stiffness_ratio},
+      LawKey{"twisting_friction", "a number", "", Range::not_negative,
+             &LawNumbers::twisting_friction, RollingFriction<LinearSpring>{}.twisting_friction,
+             true}};
+  /// The friction law over a normal law, from the numbers.
+  template <class Normal>
+  static RollingFriction<Normal> over(const Normal& normal, const LawNumbers& n) {
+    return {FrictionLawEntry<CundallStrack>::over(normal, n), n.rolling_friction,
+            n.twisting_friction, n.rolling_stiffness_ratio, n.rolling_damping};
   }
 };
 

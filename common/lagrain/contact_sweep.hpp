@@ -166,6 +166,11 @@ struct Sweep {
         for (int d = 0; d < Dim; ++d) {
           response.force[d] = select(own, answer.force[d], response.force[d]);
         }
+        if constexpr (needs.rolling) {
+          for (int d = 0; d < kSpinDim<Dim>; ++d) {
+            response.moment[d] = select(own, answer.moment[d], response.moment[d]);
+          }
+        }
         response.dashpot_loss = select(own, answer.dashpot_loss, response.dashpot_loss);
         response.friction_loss = select(own, answer.friction_loss, response.friction_loss);
         if constexpr (Memory::kReals > 0) {
@@ -174,6 +179,9 @@ struct Sweep {
       }
     }
     for (int d = 0; d < Dim; ++d) response.force[d] = only_if(touching, response.force[d]);
+    if constexpr (needs.rolling) {
+      for (Real& component : response.moment) component = only_if(touching, component);
+    }
     response.dashpot_loss = only_if(touching, response.dashpot_loss);
     response.friction_loss = only_if(touching, response.friction_loss);
     if constexpr (Memory::kReals > 0) {
@@ -275,18 +283,22 @@ struct Sweep {
 
   /// Adds force and torque to the loads of both grains, or leaves them at their places in `out`.
   template <class Places>
-  void scatter(const PairOfLanes& pair, const Touch<Dim, Real>& touch, const Vec<Dim, Real>& force,
-               Places at, PairLoad<Dim, needs>* out) const {
+  void scatter(const PairOfLanes& pair, const Touch<Dim, Real>& touch,
+               const Response<Dim, Real>& response, Places at, PairLoad<Dim, needs>* out) const {
     SpinVec<Dim, Real> turn_i, turn_j;
     if constexpr (needs.spin) {
       // Both forces act at one point, so that angular momentum is conserved exactly.
       const Real half = 0.5 * touch.overlap;
-      const SpinVec<Dim, Real> couple = torque<Real>(touch.normal, force);
+      const SpinVec<Dim, Real> couple = torque<Real>(touch.normal, response.force);
       turn_i = (half - pair.body_i.radius) * couple;
       turn_j = (pair.body_j.radius - half) * couple;
     }
-    const LoadRows for_i(LoadColumns(force, turn_i));
-    const LoadRows for_j(LoadColumns(force, turn_j));
+    if constexpr (needs.rolling) {
+      turn_i += response.moment;
+      turn_j += response.moment;
+    }
+    const LoadRows for_i(LoadColumns(response.force, turn_i));
+    const LoadRows for_j(LoadColumns(response.force, turn_j));
     if (out != nullptr) {
       for (std::size_t k = 0; k < kWidth; ++k) {
         out[at[k]] = {};
@@ -314,15 +326,18 @@ struct Sweep {
       }
       return;
     }
-    // A lane apart that seems to slide would make all take the long way through the law.
+    // A lane apart that seems to slide or roll would make all take the long way through the law.
     for (int d = 0; d < Dim; ++d) touch.slip[d] = only_if(touching, touch.slip[d]);
+    if constexpr (needs.rolling) {
+      for (Real& component : touch.relative_spin) component = only_if(touching, component);
+    }
     Memory memory = read_memory(table, at);
     const Response<Dim, Real> response = respond(
         touch, touching, pair.i, [&](std::size_t k) { return scene.material(pair.j[k]); }, memory);
     write_memory(table, at, memory);
     const Real limit = scene.largest_overlap * smaller(pair.body_i.radius, pair.body_j.radius);
     note(response, touching, Real(touch.overlap - limit), partial);
-    scatter(pair, touch, response.force, at, out);
+    scatter(pair, touch, response, at, out);
   }
 
   /// Contacts of a grain and a wall: the entries first, first + 1, ... of the table, one per lane.
@@ -367,6 +382,7 @@ struct Sweep {
     if constexpr (needs.spin) {
       turn = -distance * torque<Real>(normal, response.force);
     }
+    if constexpr (needs.rolling) turn += response.moment;
     const LoadRows push(LoadColumns(response.force, turn));
     for (std::size_t k = 0; k < kWidth; ++k) {
       push.add_to(scene.load(i[k]), k);

@@ -84,14 +84,14 @@ struct CundallStrack {
     const auto compliance = 1 / kt;
     const Real gt =
         2 * tangential_damping_ratio * sqrt(kt) * sqrt(touch.effective_mass) * onset.weight;
-    Vec<Dim, Real> xi = turned_with<Dim, Real>(memory.stretch, touch, time_step);
+    Vec<Dim, Real> xi = turned_with(memory.stretch, touch, time_step);
     Real stored = 0.5 * kt * squared(xi);
     if constexpr (!Normal::kConstantStiffness) {
       stored = 0.5 * memory.stiffness * squared(xi);
       xi = smaller(Real(memory.stiffness * compliance), Real(1)) * xi;
     }
-    xi = cut<Dim, Real>(xi + time_step * touch.slip, friction * fn * compliance);
-    const Vec<Dim, Real> ft = cut<Dim, Real>(-(kt * xi + gt * touch.slip), friction * fn);
+    xi = shortened<Vec<Dim, Real>>(xi + time_step * touch.slip, friction * fn * compliance);
+    const auto ft = shortened<Vec<Dim, Real>>(-(kt * xi + gt * touch.slip), friction * fn);
     if (time_step > 0) {
       memory.stretch = xi;
       if constexpr (!Normal::kConstantStiffness) memory.stiffness = kt;
@@ -119,29 +119,6 @@ struct CundallStrack {
   }
   bool conservative() const { return false; }
   /// @}
-
- private:
-  /// v, shortened to at most `length`.
-  template <int Dim, class Real>
-  static Vec<Dim, Real> cut(const Vec<Dim, Real>& v, const Real& length) {
-    using std::sqrt;
-    const Real length_squared = squared(v);
-    const auto longer = length_squared > length * length;
-    if (!any(longer)) return v;
-    return select(longer, Real(length / sqrt(length_squared)), Real(1)) * v;
-  }
-
-  /// The stretch follows the contact as it turns: about the normal by the twist of the step, and
-  /// with the normal, whose part is dropped. The length is kept.
-  template <int Dim, class Real>
-  static Vec<Dim, Real> turned_with(const Vec<Dim, Real>& stretch, const Touch<Dim, Real>& touch,
-                                    double time_step) {
-    using std::sqrt;
-    const Vec<Dim, Real> flat = stretch - dot(stretch, touch.normal) * touch.normal +
-                                cross<Real>(SpinVec<Dim, Real>(time_step * touch.twist), stretch);
-    const Real before = squared(stretch), after = squared(flat);
-    return select(after > Real(0), Real(sqrt(before / after)), Real(1)) * flat;
-  }
 };
 
 }  // namespace lagrain

@@ -26,6 +26,9 @@ struct Touch {
   /// Mean angular velocity of the two about the normal [rad/s]: how fast the contact turns in its
   /// own plane. Known to laws that remember; a wall does not turn.
   SpinVec<Dim, Real> twist = SpinVec<Dim, Real>::Zero();
+  /// Angular velocity of i against j [rad/s]. The part in the contact plane rolls, the part about
+  /// the normal twists. Known to laws that resist rolling.
+  SpinVec<Dim, Real> relative_spin = SpinVec<Dim, Real>::Zero();
   Real effective_mass = 0;    ///< m_i m_j / (m_i + m_j) [kg]; m_i against a wall
   Real effective_radius = 0;  ///< r_i r_j / (r_i + r_j) [m]; r_i against a wall
 };
@@ -35,7 +38,10 @@ template <int Dim, class Real = double>
 struct Response {
   Vec<Dim, Real> force = Vec<Dim, Real>::Zero();  ///< on i [N]; j receives the opposite
   Real dashpot_loss = 0;   ///< energy taken by the normal dashpot in this step [J]
-  Real friction_loss = 0;  ///< energy taken by sliding and tangential damping [J]
+  Real friction_loss = 0;  ///< energy taken by sliding, rolling, and the damping of both [J]
+  /// On i, besides that of the force [N m]; j receives the opposite. Only of laws that resist
+  /// rolling.
+  SpinVec<Dim, Real> moment = SpinVec<Dim, Real>::Zero();
 };
 
 /// A grain as its contacts see it.
@@ -88,6 +94,7 @@ MaybeTouch<Dim, Real> touch_of(const Body<Dim, needs, Real>& i, const Body<Dim, 
   if constexpr (needs.memory) {
     touch.twist = about<Real>(touch.normal, SpinVec<Dim, Real>(Real(0.5) * (i.omega + j.omega)));
   }
+  if constexpr (needs.rolling) touch.relative_spin = i.omega - j.omega;
   touch.effective_mass = Real(1) / inverse_mass;
   touch.effective_radius = i.radius * j.radius / reach;
   return result;
@@ -114,6 +121,7 @@ MaybeTouch<Dim, Real> touch_of_wall(const Body<Dim, needs, Real>& i, const Real&
   if constexpr (needs.memory) {
     touch.twist = about<Real>(normal, SpinVec<Dim, Real>(Real(0.5) * i.omega));
   }
+  if constexpr (needs.rolling) touch.relative_spin = i.omega;
   touch.effective_mass = mass;
   touch.effective_radius = i.radius;
   return result;

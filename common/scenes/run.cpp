@@ -122,7 +122,7 @@ template <int Dim, class Law>
 std::string size_row(const char* friction, bool chosen) {
   const std::size_t grain = bytes_per_grain<Dim, Law::needs>();
   const std::size_t spin = grain - bytes_per_grain<Dim, Needs{}>();
-  const std::size_t memory = Law::needs.memory ? sizeof(typename Law::template Memory<Dim>) : 0;
+  const std::size_t memory = Law::template Memory<Dim>::kReals * sizeof(double);
   return (chosen ? "  > " : "    ") + padded(friction, 10) + right(std::to_string(grain), 8) +
          right(std::to_string(spin), 10) + right(std::to_string(sizeof(Pair) + memory), 12) +
          right(std::to_string(memory), 12) + "\n";

@@ -78,10 +78,14 @@ TimeStep read_time_step(TomlTable& top) {
 
 /// Reads the numbers that a law is made from. With `base`, none is required and the missing ones
 /// are taken from there.
-void read_numbers(TomlTable& s, std::span<const LawKey> law_keys, const LawNumbers* base,
-                  LawNumbers& numbers) {
+void read_numbers(TomlTable& s, int dimension, std::span<const LawKey> law_keys,
+                  const LawNumbers* base, LawNumbers& numbers) {
   for (const LawKey& law_key : law_keys) {
     const Key key = detail::key_of(law_key);
+    if (law_key.in_space_only && dimension == 2) {
+      s.refuse(key, "there is no such motion in the plane; remove this line");
+      continue;
+    }
     double& number = numbers.*law_key.number;
     if (base != nullptr) {
       number = s.number(key, number);
@@ -115,11 +119,11 @@ void refuse_unused(TomlTable& s, const Key& choice, const LawDescription& chosen
   }
 }
 
-LawNumbers read_law(TomlTable& s, NormalModel normal, FrictionModel friction,
+LawNumbers read_law(TomlTable& s, int dimension, NormalModel normal, FrictionModel friction,
                     const LawNumbers* base) {
   LawNumbers numbers = base != nullptr ? *base : LawNumbers{};
-  read_numbers(s, description_of(normal).keys, base, numbers);
-  read_numbers(s, description_of(friction).keys, base, numbers);
+  read_numbers(s, dimension, description_of(normal).keys, base, numbers);
+  read_numbers(s, dimension, description_of(friction).keys, base, numbers);
   refuse_unused(s, keys::kNormalLaw, description_of(normal), kNormalLaws);
   refuse_unused(s, keys::kFrictionLaw, description_of(friction), kFrictionLaws);
   return numbers;
@@ -302,7 +306,7 @@ class Reader {
       throw SceneError(file_.name + ": law: missing; expected a table [law]");
     }
     TomlTable s = top_.table(keys::kLaw);
-    scene_.law = read_law(s, scene_.normal, scene_.friction, nullptr);
+    scene_.law = read_law(s, Dim, scene_.normal, scene_.friction, nullptr);
     s.finish();
     top_.for_each(keys::kPair, [&](TomlTable& pair, int) { read_pair(pair); });
     if (scene_.integrator == IntegratorModel::fourth_order) {
@@ -329,7 +333,7 @@ class Reader {
         s.fail(keys::kBetween, "a second time [\"" + names[0] + "\", \"" + names[1] + "\"]");
       }
     }
-    law.law = read_law(s, scene_.normal, scene_.friction, &scene_.law);
+    law.law = read_law(s, Dim, scene_.normal, scene_.friction, &scene_.law);
     scene_.pairs.push_back(law);
   }
 

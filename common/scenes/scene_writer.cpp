@@ -166,7 +166,9 @@ class Writer {
   void write_law(const LawNumbers& law) {
     for (const auto& keys :
          {description_of(scene_.normal).keys, description_of(scene_.friction).keys}) {
-      for (const LawKey& key : keys) out_.add(detail::key_of(key), law.*key.number);
+      for (const LawKey& key : keys) {
+        if (Dim == 3 || !key.in_space_only) out_.add(detail::key_of(key), law.*key.number);
+      }
     }
   }
 

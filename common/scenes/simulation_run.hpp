@@ -83,7 +83,7 @@ class SimulationRun final : public Run<Dim> {
     ModelSize s;
     s.per_grain = bytes_per_grain<Dim, Law::needs>();
     s.spin_per_grain = s.per_grain - bytes_per_grain<Dim, Needs{}>();
-    s.memory_per_pair = Law::needs.memory ? sizeof(typename Sim::Memory) : 0;
+    s.memory_per_pair = Sim::Memory::kReals * sizeof(double);
     s.per_near_pair = sizeof(Pair) + s.memory_per_pair;
     return s;
   }

@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 using namespace lagrain;
@@ -61,7 +62,9 @@ struct Heap {
       return make_law<Law>({.stiffness = stiffness,
                             .restitution = 0.5,
                             .friction = 0.2,
-                            .tangential_damping_ratio = 0.3});
+                            .tangential_damping_ratio = 0.3,
+                            .rolling_friction = 0.1,
+                            .twisting_friction = 0.1});
     };
     laws = LawTable<Law>(law(1e4), material_count);
     if (material_count > 1) {
@@ -94,8 +97,14 @@ struct Heap {
       std::vector<Memory> memories(size);
       if constexpr (Memory::kReals > 0) {
         for (Memory& m : memories) {
-          for (int r = 0; r < Dim; ++r) m[r] = between(-1e-3, 1e-3);
-          for (int r = Dim; r < Memory::kReals; ++r) m[r] = between(0, 1e4);  // a stiffness
+          for (int r = 0; r < Memory::kReals; ++r) m[r] = between(-1e-3, 1e-3);
+          const auto stiffen = [&](auto& part) {
+            if constexpr (std::is_same_v<decltype(part.stiffness), double>) {
+              part.stiffness = between(0, 1e4);
+            }
+          };
+          stiffen(m);
+          if constexpr (needs.rolling) stiffen(m.sliding);
         }
       }
       return memories;
@@ -133,7 +142,8 @@ bool same_loads(const H& a, const H& b) {
   Case<2, LinearSpring>, Case<3, LinearSpring>, Case<2, Hertz>, Case<3, Hertz>,    \
       Case<2, ViscousSpring>, Case<3, ViscousSpring>, Case<2, ViscousHertz>,       \
       Case<3, ViscousHertz>, Case<2, FrictionalSpring>, Case<3, FrictionalSpring>, \
-      Case<2, FrictionalHertz>, Case<3, FrictionalHertz>
+      Case<2, FrictionalHertz>, Case<3, FrictionalHertz>, Case<2, RollingSpring>,  \
+      Case<3, RollingSpring>, Case<2, RollingHertz>, Case<3, RollingHertz>
 
 }  // namespace
 
@@ -256,7 +266,7 @@ TEST_SUITE("contact_kernel") {
       const Tally tally = kernel.pairs(heap.scene(), heap.pairs, Listing::tight, kept.data());
 
       double dashpot = 0, friction = 0, deepest = 0;
-      int touching_count = 0;
+      int touching_count = 0, rolling_count = 0;
       for (std::size_t k = 0; k < heap.pairs.size(); ++k) {
         const auto [i, j] = before.pairs.pairs()[k];
         const auto a = before.body(i), b = before.body(j);
@@ -274,12 +284,13 @@ TEST_SUITE("contact_kernel") {
           CHECK(heap.pairs.memory(k) == memory);
           if constexpr (Law::needs.spin) {
             const Vec<Dim> arm_i = -(a.radius - 0.5 * touch.overlap) * touch.normal;
-            const SpinVec<Dim> turn = torque<double>(arm_i, force);
+            const SpinVec<Dim> turn = torque<double>(arm_i, force) + response.moment;
             SpinVec<Dim> kept_turn;
             for (int d = 0; d < kSpinDim<Dim>; ++d) {
               kept_turn[d] = kept[k].for_i.at[static_cast<std::size_t>(Load::kTorque + d)];
             }
             CHECK((kept_turn - turn).norm() <= 1e-12 * turn.norm());
+            if (!response.moment.isZero(0)) ++rolling_count;
           }
         } else {
           CHECK(heap.pairs.memory(k) == decltype(memory){});
@@ -290,6 +301,7 @@ TEST_SUITE("contact_kernel") {
         }
       }
       CHECK(touching_count > 20);
+      CHECK((rolling_count > 20) == Law::needs.rolling);
       CHECK(touching_count < static_cast<int>(heap.pairs.size()));
       CHECK(relative_error(tally.dashpot, dashpot) < 1e-12);
       CHECK(relative_error(tally.friction, friction) < 1e-12);

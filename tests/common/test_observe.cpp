@@ -170,7 +170,8 @@ TEST_SUITE("observe") {
   TEST_CASE_TEMPLATE("the ledger of a settling bed closes, and closer with smaller steps", C,
                      Case<2, LinearSpring>, Case<3, LinearSpring>, Case<2, FrictionalSpring>,
                      Case<3, FrictionalSpring>, Case<2, ViscousSpring>, Case<3, Hertz>,
-                     Case<2, FrictionalHertz>, Case<3, FrictionalHertz>) {
+                     Case<2, FrictionalHertz>, Case<3, FrictionalHertz>, Case<2, RollingSpring>,
+                     Case<3, RollingSpring>, Case<3, RollingHertz>) {
     const auto scene = settling_bed<C::Dim>(64, 3);
 
     const double coarse = ledger_error<C::Dim, typename C::Law>(scene, 1);

@@ -116,7 +116,8 @@ TEST_SUITE("scene") {
     CHECK(after("count = 12", "cuont = 12") ==
           "s.toml:20: fill[0].cuont: unknown key (did you mean \"count\"?)");
     CHECK(after("friction = \"elastic\"", "friction = \"elastics\"") ==
-          "s.toml:8: friction: expected \"none\", \"viscous\" or \"elastic\", got \"elastics\"");
+          "s.toml:8: friction: expected \"none\", \"viscous\", \"elastic\" or \"rolling\", got "
+          "\"elastics\"");
     CHECK(after("material = \"gravel\"", "material = \"gravle\"") ==
           "s.toml:19: fill[0].material: no material \"gravle\" (did you mean \"gravel\"?)");
   }
@@ -140,7 +141,7 @@ TEST_SUITE("scene") {
     CHECK(
         after("friction = \"elastic\"", "friction = \"none\"") ==
         "s.toml:13: law.friction: friction = \"none\" does not use it; remove this line or choose "
-        "\"viscous\" or \"elastic\"");
+        "\"viscous\" or \"elastic\" or \"rolling\"");
     const std::string hertz = with(with(kHeap, "\"linear\"", "\"hertz\""), "[law]",
                                    "[law]\nmodulus = \"1 MPa\"\nimpact_speed = 1");
     CHECK(message_of(hertz) ==

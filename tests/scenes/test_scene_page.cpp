@@ -172,6 +172,8 @@ high = [1, 1]
       with(with(plain, "\"linear\"", "\"hertz\""), "stiffness = 1e6",
            "modulus = 1e8\nimpact_speed = 1"),
       in_space<3>(plain),
+      with(with(in_space<3>(plain), "\"elastic\"", "\"rolling\""), "friction = 0.4",
+           "friction = 0.4\nrolling_friction = 0.1"),
       with(plain, fill, "count = 1\narrangement = \"random\"\n" + fill),
       with(plain, fill, "[fill.radius]\nuniform = [0.01, 0.02]\n[fill.region]\n"),
       with(plain, fill, "[fill.radius]\nvalues = [0.01, 0.02]\n[fill.region]\n"),

@@ -382,8 +382,12 @@ Sim<Dim, Law, N> start(const MotionScene<Dim>& scene, const Law& law, N neighbou
   return {std::move(grains), laws, scene.walls, setting, std::move(neighbourhood)};
 }
 
-inline constexpr Material kGravel{
-    .stiffness = 1e5, .restitution = 0.6, .friction = 0.5, .tangential_damping_ratio = 0.2};
+inline constexpr Material kGravel{.stiffness = 1e5,
+                                  .restitution = 0.6,
+                                  .friction = 0.5,
+                                  .tangential_damping_ratio = 0.2,
+                                  .rolling_friction = 0.1,
+                                  .twisting_friction = 0.05};
 
 struct AuditResult {
   std::int64_t contacts = 0;

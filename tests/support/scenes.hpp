@@ -9,6 +9,7 @@
 #include <lagrain/hertz.hpp>
 #include <lagrain/hooke.hpp>
 #include <lagrain/random.hpp>
+#include <lagrain/rolling_resistance.hpp>
 #include <lagrain/simulation.hpp>
 #include <lagrain/viscous_friction.hpp>
 
@@ -32,6 +33,8 @@ struct Case {
 
 using FrictionalSpring = CundallStrack<LinearSpring>;
 using FrictionalHertz = CundallStrack<Hertz>;
+using RollingSpring = RollingResistance<FrictionalSpring>;
+using RollingHertz = RollingResistance<FrictionalHertz>;
 using ViscousSpring = ViscousFriction<LinearSpring>;
 using ViscousHertz = ViscousFriction<Hertz>;
 
@@ -46,6 +49,10 @@ struct Material {
   double friction = 0;
   double tangential_damping_ratio = 0;
   double impact_speed = 1;  ///< [m/s]
+  double rolling_friction = 0;
+  double twisting_friction = 0;
+  double rolling_stiffness_ratio = 2.0 / 7;
+  double rolling_damping_ratio = 0.3;
 };
 
 template <class Law>
@@ -76,6 +83,16 @@ struct LawMaker<ViscousFriction<Normal>> {
     return {.normal = LawMaker<Normal>::make(m),
             .friction = m.friction,
             .tangential_damping_ratio = m.tangential_damping_ratio};
+  }
+};
+template <class Friction>
+struct LawMaker<RollingResistance<Friction>> {
+  static RollingResistance<Friction> make(const Material& m) {
+    return {.sliding = LawMaker<Friction>::make(m),
+            .rolling_friction = m.rolling_friction,
+            .twisting_friction = m.twisting_friction,
+            .stiffness_ratio = m.rolling_stiffness_ratio,
+            .damping_ratio = m.rolling_damping_ratio};
   }
 };
 
