@@ -320,6 +320,7 @@ class Placer {
     Grain<Dim> grain;
     grain.position = x;
     grain.radius = radius;
+    grain.pinned = f.pinned;
     grain.velocity = f.velocity;
     if (f.random_speed > 0) grain.velocity += f.random_speed * direction(random);
     return grain;

@@ -355,7 +355,10 @@ class Reader {
     }
     fill.radius = read_radius(s);
     read_region(s, fill.low, fill.high);
-    if (s.holds_table(keys::kVelocity)) {
+    fill.pinned = s.flag(keys::kPinned, fill.pinned);
+    if (fill.pinned) {
+      s.refuse(keys::kVelocity, "pinned grains stay; remove this line");
+    } else if (s.holds_table(keys::kVelocity)) {
       TomlTable inner = s.table(keys::kVelocity);
       fill.random_speed = inner.number(keys::kRandomSpeed);
       inner.finish();

@@ -203,7 +203,9 @@ class Writer {
     out_.as_it_is(keys::kRegion,
                   Inline{}.add(keys::kLow, fill.low).add(keys::kHigh, fill.high).text());
     out_.add(keys::kArrangement, text_of(detail::kArrangementWords, fill.arrangement));
-    if (fill.random_speed > 0) {
+    if (fill.pinned) {
+      out_.add(keys::kPinned, true);
+    } else if (fill.random_speed > 0) {
       out_.as_it_is(keys::kVelocity, Inline{}.add(keys::kRandomSpeed, fill.random_speed).text());
     } else {
       out_.add(keys::kVelocity, fill.velocity);

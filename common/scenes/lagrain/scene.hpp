@@ -89,6 +89,7 @@ struct Fill {
   Arrangement arrangement = Arrangement::lattice;  ///< rows, or places at random
   Vec<Dim> velocity = Vec<Dim>::Zero();            ///< [m/s]
   double random_speed = 0;                         ///< added, in a random direction [m/s]
+  bool pinned = false;                             ///< all of them stay where they are
 };
 
 /// A grain placed by hand.
