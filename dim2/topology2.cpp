@@ -5,6 +5,19 @@
 
 namespace lagrain {
 
+void Topology2::relabel(std::span<const int> new_number) {
+  for (Triangle& triangle : triangles_) {
+    for (int& v : triangle.vertex) {
+      if (v >= 0) v = new_number[index(v)];
+    }
+  }
+  std::size_t kept = 1;  // behind the vertex at infinity
+  for (std::size_t v = 0; v < new_number.size(); ++v) {
+    if (new_number[v] != kNone) corner_of_[kept++] = corner_of_[v + 1];
+  }
+  corner_of_.resize(kept);
+}
+
 void Topology2::clear(int vertices) {
   triangles_.clear();
   free_.clear();

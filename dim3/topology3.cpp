@@ -7,6 +7,19 @@
 
 namespace lagrain {
 
+void Topology3::relabel(std::span<const int> new_number) {
+  for (Cell& cell : cells_) {
+    for (int& v : cell.vertex) {
+      if (v >= 0) v = new_number[index(v)];
+    }
+  }
+  std::size_t kept = 1;  // behind the vertex at infinity
+  for (std::size_t v = 0; v < new_number.size(); ++v) {
+    if (new_number[v] != kNone) corner_of_[kept++] = corner_of_[v + 1];
+  }
+  corner_of_.resize(kept);
+}
+
 void Topology3::clear(int vertices) {
   cells_.clear();
   mark_.clear();

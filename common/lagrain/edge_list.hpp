@@ -81,6 +81,15 @@ class EdgeList {
     }
   }
 
+  /// Gives the sites other ids, in the same order. @param new_id  of each that has an edge
+  void relabel(std::span<const int> new_id) {
+    settle();
+    for (Edge& edge : edges_) {
+      for (int& site : edge) site = new_id[static_cast<std::size_t>(site)];
+    }
+    before_.reset();
+  }
+
   /// Forgets everything: the triangulation is being built anew.
   void clear() {
     live_ = false;

@@ -81,6 +81,9 @@ class MovingSites {
   /// @throws ContractError if the id is not present
   UpdateReport remove(int id);
 
+  /// Takes the removed ids away: present sites get the ids 0, 1, ... in the order that they have.
+  void close_gaps();
+
   /// Number of ids, removed ones included.
   int size() const { return size_; }
   /// True unless the id was removed (or never used).
@@ -145,6 +148,7 @@ class MovingSites {
   int span_of(std::span<const int> sites, Simplex& simplex) const;
   int orientation_of(const Simplex& simplex) const;
   int visible_from(int site) const;
+  int hint_of(int hidden) const { return -2 - topology_.corner_of(hidden); }
 
   /// Notes that a present site has no simplex; `hint` is a visible site near it. A hint that is
   /// hidden later leads on to its own hint, and so on without a cycle.

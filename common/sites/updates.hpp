@@ -135,6 +135,40 @@ UpdateReport MovingSites<Dim>::remove(int id) {
 }
 
 template <int Dim>
+void MovingSites<Dim>::close_gaps() {
+  // Ids keep their order, so ties are broken as before, and sorted lists stay sorted.
+  std::vector<int> new_id(index(size_ + Dim), Topology::kNone);
+  int count = 0;
+  for (int id = 0; id < size_ + Dim; ++id) {
+    if (id >= size_ || contains(id)) new_id[index(id)] = count++;
+  }
+  count -= Dim;
+  if (count == size_) return;
+  std::vector<int> hints;
+  for (const int id : hidden_) {
+    const int hint = hint_of(id);
+    hints.push_back(new_id[index(contains(hint) ? hint : visible_from(id))]);
+  }
+  topology_.relabel(new_id);
+  edges_.relabel(new_id);
+  for (int id = 0; id < size_ + Dim; ++id) {
+    if (new_id[index(id)] < 0) continue;
+    sites_[index(new_id[index(id)])] = sites_[index(id)];
+    before_[index(new_id[index(id)])] = before_[index(id)];
+  }
+  sites_.resize(index(count + Dim));
+  before_.resize(index(count + Dim));
+  site_note_.resize(index(count + Dim));
+  for (std::size_t k = 0; k < hidden_.size(); ++k) {
+    hidden_[k] = new_id[index(hidden_[k])];
+    topology_.set_corner_of(hidden_[k], -2 - hints[k]);
+  }
+  last_ = std::max(0, new_id[index(last_)]);
+  size_ = count;
+  expect_valid();
+}
+
+template <int Dim>
 void MovingSites<Dim>::begin() {
   report_ = {};
   edges_.begin_update();

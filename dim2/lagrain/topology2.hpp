@@ -33,6 +33,9 @@ class Topology2 {
 
   /// Empties everything; `vertices` finite vertices without a corner.
   void clear(int vertices);
+  /// Gives the finite vertices other numbers, in the same order, and takes away those without.
+  /// @param new_number  of each vertex; kNone for one that has no corner
+  void relabel(std::span<const int> new_number);
   /// One more vertex, without a corner.
   void add_vertex() { corner_of_.push_back(kNone); }
   /// Makes room for so many triangles.

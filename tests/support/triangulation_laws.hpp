@@ -80,6 +80,30 @@ UpdateReport check_weights(const SiteSet<Dim>& s, double share, Random& random) 
   return report;
 }
 
+/// Without the removed ids T is that of the sites that are there, and lives on.
+template <int Dim>
+void check_closed_gaps(Triangulation<Dim> t, const SiteSet<Dim>& s) {
+  std::vector<int> present, removed;
+  for (int i = 0; i < s.size(); ++i) (t.contains(i) ? present : removed).push_back(i);
+  const auto sites_of = [&](const std::vector<int>& ids) {
+    SiteSet<Dim> some = s;
+    some.x = s.x(Eigen::seqN(0, Eigen::fix<Dim>), ids);
+    some.w = s.w(ids);
+    return some;
+  };
+
+  t.close_gaps();
+
+  CHECK(t.size() == static_cast<int>(present.size()));
+  CHECK_AS_BUILT(t, sites_of(present));
+  for (const int i : removed) {
+    t.insert(t.size(), s.x.col(i), s.w[i]);
+    present.push_back(i);
+    CHECK(audited(t) == "");
+  }
+  CHECK_AS_BUILT(t, sites_of(present));
+}
+
 /// Any sequence of moves, insertions and removals ends in the triangulation of what is there.
 template <int Dim>
 void check_sequence(SiteSet<Dim> s, Random& random) {
@@ -103,6 +127,7 @@ void check_sequence(SiteSet<Dim> s, Random& random) {
     }
     CHECK(audited(t) == "");
   }
+  check_closed_gaps(t, s);
   for (int i = 0; i < s.size(); ++i) {
     CHECK(t.contains(i) == present[static_cast<std::size_t>(i)]);
     if (!t.contains(i)) t.insert(i, s.x.col(i), s.w[i]);
