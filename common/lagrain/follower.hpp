@@ -58,6 +58,13 @@ class Follower {
     certify(sites, place, radius);
   }
 
+  /// T has been changed by more than moves: tests all edges, and sees to those that fail.
+  template <class Place>
+  void test_all(Sites& sites, Place&& place, const Eigen::VectorXd& radius) {
+    sites.placed.clear();
+    certify(sites, place, radius, true);
+  }
+
   /// Gives new references and skins to the grains that wait, and to neighbours that are in their
   /// way, and repairs T by flips.
   /// @param margin  that the skins should leave [m]
@@ -221,11 +228,11 @@ class Follower {
   /// that pass between grains of hardly any overlap. Ends of edges that fail again and again are
   /// uncertain. All grains are back at rest then.
   template <class Place>
-  void certify(Sites& sites, Place&& place, const Eigen::VectorXd& radius) {
+  void certify(Sites& sites, Place&& place, const Eigen::VectorXd& radius, bool all = false) {
     // All edges passed before this update, unless some grains are uncertain: then, and if many
     // moved, test all of them.
-    const bool all = !uncertain_.empty() ||
-                     sites.placed.size() > static_cast<std::size_t>(sites.size()) / kTestAllFrom;
+    all = all || !uncertain_.empty() ||
+          sites.placed.size() > static_cast<std::size_t>(sites.size()) / kTestAllFrom;
     uncertain_.clear();
     if (laziness_.certify) {
       for (int round = 0;; ++round) {

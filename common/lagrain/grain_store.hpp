@@ -19,7 +19,8 @@ namespace lagrain {
 
 /// Grains in *slots*: records in the order of Hilbert's curve, so that neighbours in space are
 /// neighbours in memory. They get new slots when they have mixed. Outside, everything speaks of the
-/// grains' numbers, which never change.
+/// grains' numbers, from 0 to N - 1. They are in the order of the grains' *ids*, which a grain keeps
+/// as long as it is there and no other one gets. Until grains come or leave, numbers are ids.
 template <int Dim, Needs needs>
 class GrainStore {
  public:
@@ -29,31 +30,20 @@ class GrainStore {
   /// @param with_materials  whether materials matter: more than one law acts
   GrainStore(Grains<Dim, needs> grains, bool with_materials)
       : by_number_(std::move(grains)),
-        records_(index(by_number_.size())),
-        loads_(records_.size()),
-        radius_(by_number_.size()) {
+        with_materials_(with_materials),
+        next_id_(by_number_.size()) {
     const Grains<Dim, needs>& g = by_number_;
     if (g.size() > kSortFrom && g.position.allFinite()) numbers_ = spatial_order<Dim>(g.position);
-    if (with_materials && !g.material.empty()) materials_.resize(records_.size());
-    for (int slot = 0; slot < g.size(); ++slot) {
-      const int i = number(slot);
-      Record& record = records_[index(slot)];
-      record.position() = g.position.col(i);
-      record.velocity() = g.velocity.col(i);
-      record.at[Record::kRadius] = radius_[slot] = g.radius[i];
-      record.at[Record::kInverseMass] = g.inverse_mass[i];
-      loads_[index(slot)].at[Load::kMass] = g.mass[i];
-      if constexpr (needs.spin) {
-        record.omega() = g.omega.col(i);
-        record.at[Record::kInverseInertia] = g.inverse_inertia[i];
-      }
-      if (!materials_.empty()) materials_[index(slot)] = g.material[index(i)];
-    }
+    seat();
   }
 
   int count() const { return static_cast<int>(records_.size()); }  ///< N
   /// The number of the grain in a slot.
   int number(int slot) const { return numbers_.empty() ? slot : numbers_[index(slot)]; }
+  /// The ids by number, in increasing order; empty while the numbers are the ids.
+  const std::vector<int>& ids() const { return ids_; }
+  /// The id of the grain in a slot.
+  int id(int slot) const { return ids_.empty() ? number(slot) : ids_[index(number(slot))]; }
 
   // By slot.
   /// The record in a slot.
@@ -89,6 +79,36 @@ class GrainStore {
   /// @}
   /// The records have changed, or are about to.
   void outdate() { by_number_is_known_ = false; }
+
+  /// Grains leave and others come. The others move up in their slots and numbers, so that they keep
+  /// their order, and with it that of the sums; newcomers follow.
+  /// @param kept       numbers of those that stay, in increasing order
+  /// @param newcomers  with new ids
+  /// @returns the new slot of each old one; -1 where the grain has left
+  std::vector<int> exchange(const std::vector<int>& kept, const Grains<Dim, needs>& newcomers) {
+    const int before = count();
+    std::vector<int> new_number(index(before), -1), slot_of(index(before), -1), ids;
+    for (const int i : kept) {
+      new_number[index(i)] = static_cast<int>(ids.size());
+      ids.push_back(ids_.empty() ? i : ids_[index(i)]);
+    }
+    std::vector<int> numbers;
+    for (int slot = 0; slot < before; ++slot) {
+      const int i = new_number[index(number(slot))];
+      if (i < 0) continue;
+      slot_of[index(slot)] = static_cast<int>(numbers.size());
+      numbers.push_back(i);
+    }
+    for (int k = 0; k < newcomers.size(); ++k) {
+      ids.push_back(next_id_++);
+      numbers.push_back(static_cast<int>(numbers.size()));
+    }
+    by_number_ = joined(by_number(), kept, newcomers);
+    ids_ = std::move(ids);
+    numbers_ = std::move(numbers);
+    seat();
+    return slot_of;
+  }
 
   /// Whether slots are looked at before a step. The steps are fixed and places alone decide, so
   /// that all neighbourhoods do the same.
@@ -136,7 +156,7 @@ class GrainStore {
     for (int slot = 0; slot < count(); ++slot) {
       if (record(slot).position().allFinite() && record(slot).velocity().allFinite()) continue;
       std::ostringstream message;
-      message << "t = " << t << " s: grain " << number(slot)
+      message << "t = " << t << " s: grain " << id(slot)
               << " has a place or velocity that is not a number; a smaller time step would help";
       throw SimulationError(message.str());
     }
@@ -162,6 +182,32 @@ class GrainStore {
     return static_cast<std::size_t>(i);
   }
 
+  /// Fills the slots with the grains by number.
+  void seat() {
+    const Grains<Dim, needs>& g = by_number_;
+    records_.assign(index(g.size()), {});
+    loads_.assign(index(g.size()), {});
+    materials_.resize(with_materials_ && !g.material.empty() ? records_.size() : 0);
+    radius_.resize(g.size());
+    for (int slot = 0; slot < g.size(); ++slot) {
+      const int i = number(slot);
+      Record& record = records_[index(slot)];
+      Load& load = loads_[index(slot)];
+      record.position() = g.position.col(i);
+      record.velocity() = g.velocity.col(i);
+      record.at[Record::kRadius] = radius_[slot] = g.radius[i];
+      record.at[Record::kInverseMass] = g.inverse_mass[i];
+      load.at[Load::kMass] = g.mass[i];
+      load.force() = g.force.col(i);
+      if constexpr (needs.spin) {
+        record.omega() = g.omega.col(i);
+        record.at[Record::kInverseInertia] = g.inverse_inertia[i];
+        load.torque() = g.torque.col(i);
+      }
+      if (!materials_.empty()) materials_[index(slot)] = g.material[index(i)];
+    }
+  }
+
   void put_together() const {
     Grains<Dim, needs>& g = by_number_;
     for (int slot = 0; slot < count(); ++slot) {
@@ -179,6 +225,9 @@ class GrainStore {
 
   mutable Grains<Dim, needs> by_number_;
   mutable bool by_number_is_known_ = true;
+  bool with_materials_;       // whether they matter
+  int next_id_;               // of the grain that comes next
+  std::vector<int> ids_;      // by number; empty if they are the numbers
   std::vector<int> numbers_;  // of the grains in the slots; empty if they are the slots
   std::vector<Record> records_;
   std::vector<Load> loads_;

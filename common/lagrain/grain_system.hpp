@@ -33,7 +33,7 @@ namespace lagrain {
 
 /// The part of a Simulation that does not depend on its integrator: grains in slots, walls, laws,
 /// the list of near pairs with what contacts remember, and the paper's step 5, which keeps that
-/// list and the triangulation up to date.
+/// list and the triangulation up to date, also where grains come and leave.
 template <int Dim, ContactLaw<Dim> Law, Neighbourhood<Dim> N>
 class GrainSystem {
  public:
@@ -47,10 +47,13 @@ class GrainSystem {
   // What never changes is there without being put together.
   const Eigen::VectorXd& radii() const { return store_.radii(); }    ///< N, by number [m]
   const Eigen::VectorXd& masses() const { return store_.masses(); }  ///< N, by number [kg]
-  const std::vector<Wall<Dim>>& walls() const { return walls_; }     ///< as they are now
-  const LawTable<Law>& laws() const { return laws_; }                ///< as they were given
-  const Setting<Dim>& setting() const { return setting_; }           ///< as it holds now
-  const N& neighbourhood() const { return neighbourhood_; }          ///< what proposes the pairs
+  /// N, by number, in increasing order: what a grain keeps when others come and leave, and what
+  /// messages call it. Empty while the numbers are the ids.
+  const std::vector<int>& ids() const { return store_.ids(); }
+  const std::vector<Wall<Dim>>& walls() const { return walls_; }  ///< as they are now
+  const LawTable<Law>& laws() const { return laws_; }             ///< as they were given
+  const Setting<Dim>& setting() const { return setting_; }        ///< as it holds now
+  const N& neighbourhood() const { return neighbourhood_; }       ///< what proposes the pairs
   /// Energy put in and taken out since the start.
   const EnergyFlow& flow() const { return flow_; }
 
@@ -102,10 +105,16 @@ class GrainSystem {
   /// pair.i may be the larger number.
   template <class F>
   void for_each_contact(F&& f) const {
+    for_each_contact_of([](int) { return true; }, f);
+  }
+  /// The same for the contacts with a grain of a kind: wanted(number).
+  template <class Wanted, class F>
+  void for_each_contact_of(Wanted&& wanted, F&& f) const {
     const Grains<Dim, needs>& g = grains();
     for_each_table([&](const auto& table) {
       for (std::size_t k = 0; k < table.size(); ++k) {
         const Pair pair{store_.number(table.pairs()[k].i), store_.number(table.pairs()[k].j)};
+        if (!wanted(pair.i) && !wanted(pair.j)) continue;
         const auto [touching, touch] = touch_of(body(g, pair.i), body(g, pair.j));
         if (!touching) continue;
         Memory memory = table.memory(k);
@@ -117,11 +126,17 @@ class GrainSystem {
   /// Visits every wall contact: f(wall pair, touch, response, memory).
   template <class F>
   void for_each_wall_contact(F&& f) const {
+    for_each_wall_contact_of([](int) { return true; }, f);
+  }
+  /// The same for the contacts of the grains of a kind: wanted(number).
+  template <class Wanted, class F>
+  void for_each_wall_contact_of(Wanted&& wanted, F&& f) const {
     const Grains<Dim, needs>& g = grains();
     for (const auto& block : near_.blocks()) {
       for (std::size_t k = 0; k < block.walls.size(); ++k) {
         WallPair pair = block.walls.pairs()[k];
         pair.i = store_.number(pair.i);
+        if (!wanted(pair.i)) continue;
         const Wall<Dim>& wall = walls_[index(pair.wall)];
         const Vec<Dim> x = g.position.col(pair.i);
         const auto [distance, normal] =
@@ -154,13 +169,9 @@ class GrainSystem {
     expect_sound_walls(walls_);
     join_walls(walls_);
     for (Wall<Dim>& wall : walls_) wall.advance(0, 0);
-    pin_grains();
-    near_.reset(count(), std::max(kLeastBlock, (count() + kMostBlocks - 1) / kMostBlocks));
-    strays_.resize(near_.blocks().size());
-    // A run that may overlap without a limit may pass through things as well.
-    if (std::isfinite(setting_.largest_overlap) && count() > 0) {
-      watch_ = PassageWatch<Dim>(near_.blocks().size(), store_.radius().minCoeff(), walls_);
-    }
+    near_.reset(count(), block_size());
+    watch_ = PassageWatch<Dim>(walls_, 0);
+    meet_grains();
   }
 
   int count() const { return store_.count(); }
@@ -176,8 +187,8 @@ class GrainSystem {
     store_.expect_finite(time());
     const std::vector<int> slot_of = store_.sort_if_mixed();
     if (slot_of.empty()) return;
-    near_.renumber(slot_of);
-    pin_grains();
+    near_.renumber(slot_of, count(), block_size());
+    meet_grains();
     if constexpr (requires { neighbourhood_.forget(); }) neighbourhood_.forget();
   }
 
@@ -194,11 +205,57 @@ class GrainSystem {
     }
   }
 
+  /// Marks for grains and walls.
+  struct Marks {
+    std::vector<bool> grains;  ///< by number
+    std::vector<bool> walls;   ///< by place among the walls
+  };
+
+  /// Grains leave and others come, with the energy that they carry. What contacts of the others
+  /// remember stays.
+  /// @param kept  numbers of those that stay, in increasing order
+  /// @returns whose forces change: newcomers, and what touches them or touched one that left
+  Marks exchange_grains(const std::vector<int>& kept, const Grains<Dim, needs>& newcomers) {
+    std::vector<bool> leaves(index(count()), true);
+    for (const int i : kept) leaves[index(i)] = false;
+    Marks before{leaves, std::vector<bool>(walls_.size())};
+    flow_.carried -= energy_of(leaves, before);
+    Marks changed{{}, before.walls};
+    for (const int i : kept) changed.grains.push_back(before.grains[index(i)]);
+
+    const bool one_law = store_.materials().empty();
+    const std::vector<int> slot_of = store_.exchange(kept, newcomers);
+    near_.renumber(slot_of, count(), block_size());
+    if (store_.materials().empty() != one_law) {
+      forces_ = ContactForces<Dim, Law>(setting_.instructions, store_.materials().empty());
+      forces_.measure_time(measuring_);
+    }
+    watch_ = PassageWatch<Dim>(walls_, time());
+    meet_grains();
+    if constexpr (requires {
+                    neighbourhood_.exchange(slot_of, store_.places(), store_.radius());
+                  }) {
+      store_.expect_finite(time());
+      const Stopwatch watch;
+      neighbourhood_.exchange(slot_of, store_.places(), store_.radius());
+      times_.refresh += watch.seconds();
+    } else if constexpr (requires { neighbourhood_.forget(); }) {
+      neighbourhood_.forget();
+    }
+    update_triangulation(time());
+
+    std::vector<bool> is_new(kept.size(), false);
+    is_new.resize(index(count()), true);
+    changed.grains.resize(index(count()), true);
+    flow_.carried += energy_of(is_new, changed);
+    return changed;
+  }
+
   /// Grains and walls have come to where they are at time t [s].
   void expect_no_passage(double t) {
     watch_.expect_no_passage(
         count(), [&](int slot) -> const Record& { return store_.record(slot); },
-        [&](int slot) { return store_.number(slot); }, walls_, t,
+        [&](int slot) { return store_.id(slot); }, walls_, t,
         near_.shift(t) - near_.shift(watch_.since()), setting_.time_step);
   }
 
@@ -281,9 +338,44 @@ class GrainSystem {
     }
   }
 
-  void pin_grains() {
+  int block_size() const {
+    return std::max(kLeastBlock, (count() + kMostBlocks - 1) / kMostBlocks);
+  }
+
+  /// The grains have come to lie in other slots, or they are others.
+  void meet_grains() {
     near_.pin(PinnedGrains(count(),
                            [&](int slot) { return store_.record(slot).at[Record::kInverseMass]; }));
+    strays_.assign(near_.blocks().size(), {});
+    // A run that may overlap without a limit may pass through things as well.
+    if (std::isfinite(setting_.largest_overlap) && count() > 0) {
+      watch_.meet(near_.blocks().size(), store_.radius().minCoeff());
+    }
+  }
+
+  /// Kinetic and potential energy of some grains, and the elastic energy of their contacts [J].
+  /// @param some     marks them
+  /// @param touched  gets marks where grains and walls touch one of them
+  double energy_of(const std::vector<bool>& some, Marks& touched) const {
+    const Grains<Dim, needs>& g = grains();
+    std::vector<int> numbers;
+    for (int i = 0; i < count(); ++i) {
+      if (some[index(i)]) numbers.push_back(i);
+    }
+    const auto theirs = joined(g, numbers, make_grains<Dim, needs>({}));
+    double energy = kinetic_energy(theirs) - setting_.gravity.dot(theirs.position * theirs.mass);
+    const auto wanted = [&](int i) { return static_cast<bool>(some[index(i)]); };
+    for_each_contact_of(wanted, [&](Pair pair, const auto& touch, const auto&, const auto& memory) {
+      energy += laws_.of(g.material, pair.i, pair.j).elastic_energy(touch, memory);
+      touched.grains[index(pair.i)] = touched.grains[index(pair.j)] = true;
+    });
+    for_each_wall_contact_of(
+        wanted, [&](WallPair pair, const auto& touch, const auto&, const auto& memory) {
+          const int material = walls_[index(pair.wall)].material;
+          energy += laws_.with_wall(g.material, pair.i, material).elastic_energy(touch, memory);
+          touched.walls[index(pair.wall)] = true;
+        });
+    return energy;
   }
 
   /// @returns false if a refresh is due

@@ -73,6 +73,19 @@ double grain_inertia(double mass, double radius) {
   return (Dim == 2 ? 0.5 : 0.4) * mass * radius * radius;
 }
 
+/// Kinetic energy of translation and rotation [J].
+template <int Dim, Needs needs>
+double kinetic_energy(const Grains<Dim, needs>& g) {
+  double twice = 0;
+  for (int i = 0; i < g.size(); ++i) {
+    twice += g.mass[i] * g.velocity.col(i).squaredNorm();
+    if constexpr (needs.spin) {
+      if (g.inverse_inertia[i] > 0) twice += g.omega.col(i).squaredNorm() / g.inverse_inertia[i];
+    }
+  }
+  return 0.5 * twice;
+}
+
 /// Lays grains out as arrays, forces zero.
 /// @throws ContractError if a radius or mass is not positive and finite, a number is NaN, a
 /// material does not fit its byte, or a pinned grain moves.
@@ -123,6 +136,47 @@ Grains<Dim, needs> make_grains(const std::vector<Grain<Dim>>& list) {
       grains.material.push_back(static_cast<std::uint8_t>(grain.material));
   }
   return grains;
+}
+
+/// Some grains of one set, then all of another one.
+/// @param kept  which of the first set, by number
+template <int Dim, Needs needs>
+Grains<Dim, needs> joined(const Grains<Dim, needs>& first, const std::vector<int>& kept,
+                          const Grains<Dim, needs>& second) {
+  const auto stay = static_cast<Eigen::Index>(kept.size());
+  const Eigen::Index come = second.size();
+  const auto columns = [&](const auto& a, const auto& b) {
+    typename std::decay_t<decltype(a)> both(a.rows(), stay + come);
+    both.leftCols(stay) = a(Eigen::seqN(0, a.rows()), kept);
+    both.rightCols(come) = b;
+    return both;
+  };
+  const auto numbers = [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+    Eigen::VectorXd both(stay + come);
+    both.head(stay) = a(kept);
+    both.tail(come) = b;
+    return both;
+  };
+  Grains<Dim, needs> all;
+  all.position = columns(first.position, second.position);
+  all.velocity = columns(first.velocity, second.velocity);
+  all.force = columns(first.force, second.force);
+  all.radius = numbers(first.radius, second.radius);
+  all.mass = numbers(first.mass, second.mass);
+  all.inverse_mass = numbers(first.inverse_mass, second.inverse_mass);
+  if constexpr (needs.spin) {
+    all.omega = columns(first.omega, second.omega);
+    all.torque = columns(first.torque, second.torque);
+    all.inverse_inertia = numbers(first.inverse_inertia, second.inverse_inertia);
+  }
+  if (!first.material.empty() || !second.material.empty()) {
+    const auto material = [](const Grains<Dim, needs>& g, int i) {
+      return g.material.empty() ? std::uint8_t{0} : g.material[static_cast<std::size_t>(i)];
+    };
+    for (const int i : kept) all.material.push_back(material(first, i));
+    for (int i = 0; i < come; ++i) all.material.push_back(material(second, i));
+  }
+  return all;
 }
 
 }  // namespace lagrain

@@ -82,6 +82,40 @@ struct LazySites {
     t.build(reference, weight);
   }
 
+  /// Grains leave T, and others join it with small skins. Edges are not tested.
+  /// @param new_number  of each former grain, in the same order; -1: it has left
+  /// @param x           all grains now, those that have come behind the others
+  void exchange(const std::vector<int>& new_number, const Columns<Dim>& x,
+                const Eigen::VectorXd& radius) {
+    int stay = 0;
+    for (int i = 0; i < size(); ++i) {
+      const int k = new_number[static_cast<std::size_t>(i)];
+      if (k < 0) {
+        cost.ladder += t.remove(i);
+        continue;
+      }
+      reference.col(k) = reference.col(i);
+      aside.col(k) = aside.col(i);
+      skin[k] = skin[i];
+      weight[k] = weight[i];
+      ++stay;
+    }
+    t.close_gaps();
+    reference.conservativeResize(Dim, x.cols());
+    aside.conservativeResize(Dim, x.cols());
+    skin.conservativeResize(x.cols());
+    weight.conservativeResize(x.cols());
+    standing.assign(static_cast<std::size_t>(x.cols()), Standing::at_rest);
+    Random random(static_cast<std::uint64_t>(x.cols()));
+    for (int i = stay; i < size(); ++i) {
+      for (int d = 0; d < Dim; ++d) aside(d, i) = kHair * random.uniform(-1, 1);
+      const double s = kSmallSkin * radius[i];
+      reference.col(i) = x.col(i) - drift + s * aside.col(i);
+      set_skin(radius, i, kUsable * s);
+      cost.ladder += t.insert(i, reference.col(i), weight[i]);
+    }
+  }
+
   /// Gives a grain another skin [m], and so another weight.
   void set_skin(const Eigen::VectorXd& radius, int i, double s) {
     skin[i] = s;

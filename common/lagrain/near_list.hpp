@@ -214,8 +214,10 @@ class NearList {
   }
 
   /// The grains have new slots: the memories follow, and the list waits for a refresh.
-  /// @param slot  new slot of each old one
-  void renumber(const std::vector<int>& slot) {
+  /// @param slot        new slot of each old one; -1 where the grain has left
+  /// @param size        number of grains from now on
+  /// @param block_size  of slots from now on
+  void renumber(const std::vector<int>& slot, int size, int block_size) {
     std::vector<std::pair<Pair, Memory>> pairs;
     std::vector<std::pair<WallPair, Memory>> wall_pairs;
     for (const Block& block : blocks_) {
@@ -223,6 +225,7 @@ class NearList {
         for (std::size_t k = 0; k < table->size(); ++k) {
           const Pair old = table->pairs()[k];
           const Pair pair{slot[index(old.i)], slot[index(old.j)]};
+          if (pair.i < 0 || pair.j < 0) continue;
           if (pair.i < pair.j) {
             pairs.emplace_back(pair, table->memory(k));
           } else {
@@ -231,13 +234,14 @@ class NearList {
         }
       }
       for (std::size_t k = 0; k < block.walls.size(); ++k) {
-        const WallPair old = block.walls.pairs()[k];
-        wall_pairs.emplace_back(WallPair{slot[index(old.i)], old.wall, old.piece},
-                                block.walls.memory(k));
+        WallPair pair = block.walls.pairs()[k];
+        pair.i = slot[index(pair.i)];
+        if (pair.i >= 0) wall_pairs.emplace_back(pair, block.walls.memory(k));
       }
     }
     sort_by_pair(pairs);
     sort_by_pair(wall_pairs);
+    reset(size, block_size);
     auto pair = pairs.cbegin();
     auto wall_pair = wall_pairs.cbegin();
     for (Block& block : blocks_) {
@@ -254,7 +258,6 @@ class NearList {
       wall_pair = last_wall;
     }
     list_ends();
-    listed_ = false;
   }
 
   /// Checks what is listed against a search from nothing, and what is kept beside it; empty means

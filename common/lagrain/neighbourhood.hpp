@@ -82,7 +82,8 @@ Vec<Dim> common_drift(int n, F&& f) {
 /// centres x [m], for margins [m] that it may shrink (never enlarge) where it cannot promise more.
 /// As long as no grain moves further than its margin from there, a drift common to all apart, no
 /// other pair can touch. One that carries something from question to question has `forget()` as
-/// well, for when the grains are numbered anew.
+/// well, for when the grains are numbered anew, and may have `exchange()`, for when some leave and
+/// others come.
 template <class N, int Dim>
 concept Neighbourhood = requires(N n, const Columns<Dim>& x, const Eigen::VectorXd& radius,
                                  Eigen::VectorXd& margin, std::vector<Pair>& pairs) {

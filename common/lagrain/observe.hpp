@@ -25,27 +25,17 @@ struct Ledger {
   double wall_work = 0;  ///< put in by moving walls
   double dashpot = 0;    ///< taken by normal dashpots
   double friction = 0;   ///< taken by friction
+  double carried = 0;    ///< brought by grains that came, less what grains took along that left
 
   /// What is in the system or has left it; constant in exact arithmetic with an exact integrator.
-  double balance() const { return kinetic + gravity + elastic + dashpot + friction - wall_work; }
+  double balance() const {
+    return kinetic + gravity + elastic + dashpot + friction - wall_work - carried;
+  }
 };
 
 /// Energy that the ledger cannot account for since `start` [J]: the run's own error bar.
 inline double residual(const Ledger& now, const Ledger& start) {
   return now.balance() - start.balance();
-}
-
-/// Kinetic energy of translation and rotation [J].
-template <int Dim, Needs needs>
-double kinetic_energy(const Grains<Dim, needs>& g) {
-  double twice = 0;
-  for (int i = 0; i < g.size(); ++i) {
-    twice += g.mass[i] * g.velocity.col(i).squaredNorm();
-    if constexpr (needs.spin) {
-      if (g.inverse_inertia[i] > 0) twice += g.omega.col(i).squaredNorm() / g.inverse_inertia[i];
-    }
-  }
-  return 0.5 * twice;
 }
 
 /// Total momentum [kg m/s], shape Dim.
@@ -86,6 +76,7 @@ Ledger energy_ledger(const Simulation<Dim, Law, Motion, N>& sim) {
   ledger.wall_work = sim.flow().wall_work;
   ledger.dashpot = sim.flow().dashpot;
   ledger.friction = sim.flow().friction;
+  ledger.carried = sim.flow().carried;
   return ledger;
 }
 

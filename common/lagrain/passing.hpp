@@ -65,12 +65,16 @@ template <int Dim>
 class PassageWatch {
  public:
   PassageWatch() = default;  ///< watches nothing
+  /// Watches nothing until it has met grains.
+  /// @param walls  as they are at time t [s]
+  PassageWatch(const std::vector<Wall<Dim>>& walls, double t) { remember(walls, t); }
+
+  /// Takes note of the grains, or of their new slots.
   /// @param blocks           of slots, which may be noted from side by side
   /// @param smallest_radius  of all grains [m]; infinite: everything counts as slow
-  /// @param walls            as they are at time 0
-  PassageWatch(std::size_t blocks, double smallest_radius, const std::vector<Wall<Dim>>& walls)
-      : slow_(kSlow * smallest_radius), long_ways_(blocks) {
-    remember(walls, 0);
+  void meet(std::size_t blocks, double smallest_radius) {
+    slow_ = kSlow * smallest_radius;
+    long_ways_.assign(blocks, {});
   }
 
   /// When it was looked last [s]: ways are counted from there.

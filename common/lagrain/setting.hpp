@@ -26,6 +26,7 @@ struct EnergyFlow {
   double wall_work = 0;  ///< by moving walls on the grains
   double dashpot = 0;    ///< taken by normal dashpots
   double friction = 0;   ///< taken by friction
+  double carried = 0;    ///< by grains that came, less that of grains that left
 };
 
 /// Wall-clock time spent so far [s]. What is done once per step is measured only if asked for.

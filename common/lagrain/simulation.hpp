@@ -19,6 +19,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -95,8 +96,53 @@ class Simulation : public GrainSystem<Dim, Law, N> {
     }
   }
 
+  /// Between two steps, grains leave and others come. The others keep their ids, their order, the
+  /// forces on them and what their contacts remember. Only where a leaver touched them, or a
+  /// newcomer does, are forces evaluated anew. The energy that comes and goes is in flow().
+  /// @param leavers    numbers, in increasing order
+  /// @param newcomers  get the numbers that follow those of the others, and new ids
+  /// @throws ContractError if a number is not that of a grain, the time step is not safe for the
+  ///         newcomers, their material is unknown, or the integrator is for conservative scenes;
+  ///         nothing has changed then
+  void exchange(const std::vector<int>& leavers, const Grains<Dim, needs>& newcomers) {
+    LAGRAIN_EXPECTS(!Motion::kConservativeOnly,
+                    std::string(Motion::kName) + " integrates conservative scenes: none may leave");
+    std::vector<int> kept;
+    auto leaver = leavers.begin();
+    for (int i = 0; i < this->count(); ++i) {
+      if (leaver != leavers.end() && *leaver == i) {
+        ++leaver;
+      } else {
+        kept.push_back(i);
+      }
+    }
+    LAGRAIN_EXPECTS(leaver == leavers.end(),
+                    "leaver " + std::to_string(*leaver) + " is no grain, or out of order");
+    if (newcomers.size() > 0) {
+      expect_known_materials(newcomers, laws_, walls_);
+      expect_safe_step(setting_.time_step,
+                       time_scales(joined(store_.by_number(), kept, newcomers), laws_, walls_));
+    }
+    const auto changed = exchange_grains(kept, newcomers);
+    find_forces(0, [&](std::size_t b, const Load* loads) {
+      const auto& block = near_.blocks()[b];
+      for (int slot = block.first_slot; slot < block.end_slot; ++slot) {
+        if (!changed.grains[static_cast<std::size_t>(store_.number(slot))]) continue;
+        store_.load(slot) = loads[slot - block.first_slot];
+      }
+    });
+    for (std::size_t w = 0; w < walls_.size(); ++w) {
+      if (!changed.walls[w]) continue;
+      const WallLoad<Dim> load = forces_.wall_load(w);
+      walls_[w].force = load.force;
+      walls_[w].torque = load.torque;
+    }
+    store_.outdate();
+  }
+
  private:
-  using System::advance_walls, System::expect_no_passage, System::for_each_block,
+  using System::advance_walls, System::exchange_grains, System::expect_no_passage,
+      System::for_each_block,
       System::sort_grains, System::update_triangulation;
   using System::flow_, System::force_step_, System::forces_, System::laws_, System::measuring_,
       System::near_, System::setting_, System::steps_, System::store_, System::strays_,
@@ -119,22 +165,28 @@ class Simulation : public GrainSystem<Dim, Law, N> {
            Motion::time_of(evaluation) * setting_.time_step;
   }
 
-  /// Steps 2 to 4 of the paper: forces where the grains are at time t [s]. Each block goes on once
-  /// its own are known: nobody else reads its places then.
-  void evaluate_forces(double t, const Then& then) {
+  /// Steps 2 and 3 of the paper: forces where the grains are. f(block, loads of its grains) goes on
+  /// with a block once its own are known: nobody else reads its places then.
+  /// @param time_step  by which memories and losses advance [s]
+  template <class F>
+  void find_forces(double time_step, F&& f) {
     const ContactScene<Dim, Law> scene{
-        store_.records().data(), nullptr,     &store_.materials(),     &laws_,
-        walls_.data(),           force_step_, setting_.largest_overlap};
-    const std::size_t blocks = near_.blocks().size();
+        store_.records().data(), nullptr,   &store_.materials(),     &laws_,
+        walls_.data(),           time_step, setting_.largest_overlap};
     forces_.begin(near_, walls_, setting_.threads);
-    move_seconds_.assign(blocks, 0);
-    if (blocks > 1) {
+    if (near_.blocks().size() > 1) {
       for_each_block(
           [&](std::size_t b, std::size_t) { forces_.keep_pairs_across(scene, near_, b); });
     }
     for_each_block([&](std::size_t b, std::size_t thread) {
-      const Load* loads =
-          forces_.detect_and_apply_law(scene, near_, b, thread, store_, setting_.gravity);
+      f(b, forces_.detect_and_apply_law(scene, near_, b, thread, store_, setting_.gravity));
+    });
+  }
+
+  /// Steps 2 to 4 of the paper, where the grains are at time t [s].
+  void evaluate_forces(double t, const Then& then) {
+    move_seconds_.assign(near_.blocks().size(), 0);
+    find_forces(force_step_, [&](std::size_t b, const Load* loads) {
       const Stopwatch watch(measuring_);
       update_trajectories(b, loads, t, then);
       move_seconds_[b] = watch.seconds();
@@ -155,7 +207,7 @@ class Simulation : public GrainSystem<Dim, Law, N> {
     }
     if (tally.excess > 0) {
       report_deep_overlap(
-          forces_.deepest(), [&](int slot) { return store_.number(slot); }, walls_, t,
+          forces_.deepest(), [&](int slot) { return store_.id(slot); }, walls_, t,
           setting_.largest_overlap);
     }
   }

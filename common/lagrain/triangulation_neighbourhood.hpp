@@ -56,9 +56,37 @@ class TriangulationNeighbourhood {
   /// The grains have other numbers from now on: T is built anew at the next question.
   void forget() { sites_.reference.resize(Dim, 0); }
 
+  /// Grains have left, and others have come behind those that stay: T follows by local operations,
+  /// unless so many come and go that a build is cheaper.
+  /// @param new_number  of each former grain, in the same order; -1: it has left
+  /// @param x           all grains now [m]; finite
+  void exchange(const std::vector<int>& new_number, const Columns<Dim>& x,
+                const Eigen::VectorXd& radius) {
+    const auto left = std::count(new_number.begin(), new_number.end(), -1);
+    const auto come = x.cols() - static_cast<Eigen::Index>(new_number.size()) + left;
+    const bool known = laziness_.follow && sites_.reference.cols() > 0 &&
+                       sites_.reference.cols() == static_cast<Eigen::Index>(new_number.size());
+    if (!known || kMostExchanged * (left + come) > x.cols()) {
+      forget();
+      return;
+    }
+    sites_.exchange(new_number, x, radius);
+    if (leaping_) {
+      leap(x, radius);
+    } else {
+      follower_.test_all(
+          sites_, [&](int i) -> Vec<Dim> { return x.col(i); }, radius);
+    }
+  }
+
   /// @pre x is finite
   void near_pairs(const Columns<Dim>& x, const Eigen::VectorXd& radius, Eigen::VectorXd& margin,
                   std::vector<Pair>& pairs) {
+    if (x.cols() == 0) {
+      sites_.t.build(x, radius);
+      pairs.clear();
+      return;
+    }
     const auto place = [&](int i) -> Vec<Dim> { return x.col(i); };
     if (sites_.reference.cols() != x.cols()) {
       build(x, radius);
@@ -142,6 +170,9 @@ class TriangulationNeighbourhood {
   /// Of so many grains at most one is fast in a calm bed. With half or twice as many T follows a
   /// little later or earlier after a shake.
   static constexpr int kFewest = 10;
+  /// If more than one grain in so many comes or goes, T is built anew: to insert or remove a site
+  /// takes about as long as its part of a build, and T is built twice. It was not tuned.
+  static constexpr int kMostExchanged = 4;
   /// Questions in a row at which the bed is calm and no grain has left its skin.
   static constexpr int kCalm = 5;
 

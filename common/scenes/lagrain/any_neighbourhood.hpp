@@ -38,6 +38,12 @@ class AnyNeighbourhood {
   /// @}
   /// The grains have other numbers from now on.
   void forget() { held_->forget(); }
+  /// Grains have left, and others have come behind those that stay.
+  /// @param new_number  of each former grain, in the same order; -1: it has left
+  void exchange(const std::vector<int>& new_number, const Columns<Dim>& x,
+                const Eigen::VectorXd& radius) {
+    held_->exchange(new_number, x, radius);
+  }
   /// Whether it leaves out no pair.
   bool keeps_promise() const { return held_->keeps_promise(); }
   /// What the triangulation cost; null for other neighbourhoods.
@@ -54,6 +60,7 @@ class AnyNeighbourhood {
     virtual bool pairs_of(std::vector<int>&, const PlaceOf<Dim>&, const Eigen::VectorXd&,
                           Eigen::VectorXd&, std::vector<Pair>&) = 0;
     virtual void forget() = 0;
+    virtual void exchange(const std::vector<int>&, const Columns<Dim>&, const Eigen::VectorXd&) = 0;
     virtual bool keeps_promise() const = 0;
     virtual const TriangulationCost* cost() const = 0;
     virtual std::int64_t edges() const = 0;
@@ -77,6 +84,14 @@ class AnyNeighbourhood {
     }
     void forget() override {
       if constexpr (requires { neighbourhood.forget(); }) neighbourhood.forget();
+    }
+    void exchange(const std::vector<int>& new_number, const Columns<Dim>& x,
+                  const Eigen::VectorXd& radius) override {
+      if constexpr (requires { neighbourhood.exchange(new_number, x, radius); }) {
+        neighbourhood.exchange(new_number, x, radius);
+      } else {
+        forget();
+      }
     }
     bool keeps_promise() const override { return lagrain::keeps_promise(neighbourhood); }
     const TriangulationCost* cost() const override {
