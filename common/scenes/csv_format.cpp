@@ -97,13 +97,13 @@ std::string frame_csv(const Run<Dim>& run, const Frame<Dim>& frame) {
   csv.word("radius[m]");
   csv.word("material[-]");
   csv.end();
-  for (int i = 0; i < run.count(); ++i) {
-    csv.number(i);
+  for (Eigen::Index i = 0; i < frame.position.cols(); ++i) {
+    csv.number(frame.id[static_cast<std::size_t>(i)]);
     csv.vector(frame.position.col(i));
     csv.vector(frame.velocity.col(i));
     if (frame.spin) csv.vector(frame.spin->col(i));
-    csv.number(run.radii()[i]);
-    const auto m = static_cast<std::size_t>(run.materials()[static_cast<std::size_t>(i)]);
+    csv.number(frame.radius[i]);
+    const auto m = static_cast<std::size_t>(frame.material[static_cast<std::size_t>(i)]);
     csv.word(run.scene().materials[m].name);
     csv.end();
   }
@@ -120,9 +120,9 @@ std::string contacts_csv(const Run<Dim>& run) {
   csv.names(Dim, "f", "N");
   csv.end();
   for (const ContactRecord<Dim>& contact : run.contacts()) {
-    csv.number(contact.i);
+    csv.number(run.id(contact.i));
     if (contact.wall < 0) {
-      csv.number(contact.j);
+      csv.number(run.id(contact.j));
     } else {
       csv.word(run.walls()[static_cast<std::size_t>(contact.wall)].name);
     }

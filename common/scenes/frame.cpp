@@ -25,6 +25,16 @@ std::vector<SeriesColumn> series_columns(const Run<Dim>& run) {
   const auto add = [&](const std::string& stem, const char* unit) {
     for (int d = 0; d < Dim; ++d) columns.push_back({stem + "xyz"[d], unit});
   };
+  if (run.traffic() != nullptr) {
+    columns.push_back({"carried", "J"});
+    columns.push_back({"grains", "-"});
+    for (const Inlet<Dim>& inlet : run.scene().inlets) columns.push_back({inlet.name + ".in", "-"});
+    for (const Outlet<Dim>& outlet : run.scene().outlets) {
+      columns.push_back({outlet.name + ".out", "-"});
+      columns.push_back({outlet.name + ".mass", "kg"});
+    }
+    if (run.scene().domain) columns.push_back({"domain.out", "-"});
+  }
   for (const Wall<Dim>& wall : run.walls()) {
     add(wall.name + ".f", "N");
     if (wall.moves()) add(wall.name + ".", "m");
@@ -51,6 +61,16 @@ Sample sample_of(const Run<Dim>& run, const Ledger& now, const ContactStatistics
              s.coordination,    s.mean_overlap,
              s.largest_overlap, static_cast<std::int64_t>(run.near_pairs().size()),
              run.refreshes()};
+  if (const TrafficCounts* traffic = run.traffic()) {
+    row.emplace_back(now.carried);
+    row.emplace_back(std::int64_t{run.count()});
+    for (const auto& in : traffic->inlets) row.emplace_back(in.grains);
+    for (const auto& out : traffic->outlets) {
+      row.emplace_back(out.grains);
+      row.emplace_back(out.mass);
+    }
+    if (run.scene().domain) row.emplace_back(traffic->lost);
+  }
   const auto add = [&](const Vec<Dim>& v) { row.insert(row.end(), v.begin(), v.end()); };
   for (const Wall<Dim>& wall : run.walls()) {
     add(wall.force);

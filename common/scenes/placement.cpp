@@ -2,6 +2,7 @@
 #include <lagrain/placement.hpp>
 
 #include "grain_file.hpp"
+#include "placing.hpp"
 #include "pushing.hpp"
 
 #include <lagrain/numbers.hpp>
@@ -19,6 +20,11 @@
 
 namespace lagrain {
 namespace {
+
+using detail::clear_of_walls;
+using detail::grain_from;
+using detail::largest;
+using detail::RadiusDraw;
 
 /// Spacing of a lattice in largest diameters: the surplus is the room for jitter.
 constexpr double kSpacing = 1.02;
@@ -95,71 +101,6 @@ class Occupied {
       cells_;  // a key shared by accident only costs
 };
 
-/// The largest radius of a law [m].
-double largest(const RadiusLaw& law) {
-  if (const auto* r = std::get_if<double>(&law)) return *r;
-  if (const auto* u = std::get_if<UniformRadius>(&law)) return u->high;
-  if (const auto* s = std::get_if<SieveCurve>(&law)) return s->openings.back() / 2;
-  const auto& listed = std::get<ListedRadius>(law);
-  return *std::max_element(listed.values.begin(), listed.values.end());
-}
-
-/// Draws radii from a law. Masses go with radius^Dim: grains of one fill have one density.
-template <int Dim>
-class RadiusDraw {
- public:
-  explicit RadiusDraw(const RadiusLaw& law) : law_(law) {
-    if (const auto* listed = std::get_if<ListedRadius>(&law)) {
-      numbers_ = listed->weights;
-      if (listed->by == Share::number) return;
-      const double unit = *std::min_element(listed->values.begin(), listed->values.end());
-      for (std::size_t k = 0; k < numbers_.size(); ++k) {
-        numbers_[k] *= std::pow(unit / listed->values[k], Dim);
-      }
-    } else if (const auto* curve = std::get_if<SieveCurve>(&law)) {
-      const double unit = curve->openings.front();
-      for (std::size_t k = 0; k + 1 < curve->openings.size(); ++k) {
-        const double a = unit / curve->openings[k];
-        const double b = unit / curve->openings[k + 1];
-        // The mean of 1 / radius^Dim between the two: the number of grains in a unit of mass.
-        const double mean = Dim == 2 ? a * b : 0.5 * (a + b) * a * b;
-        numbers_.push_back((curve->passing[k + 1] - curve->passing[k]) * mean);
-      }
-    }
-  }
-
-  double operator()(Random& random) const {
-    if (const auto* r = std::get_if<double>(&law_)) return *r;
-    if (const auto* u = std::get_if<UniformRadius>(&law_)) {
-      return u->by == Share::number ? random.uniform(u->low, u->high)
-                                    : uniform_in_mass(u->low, u->high, random);
-    }
-    const std::size_t k = pick(random);
-    if (const auto* listed = std::get_if<ListedRadius>(&law_)) return listed->values[k];
-    const auto& openings = std::get<SieveCurve>(law_).openings;
-    return uniform_in_mass(openings[k] / 2, openings[k + 1] / 2, random);
-  }
-
- private:
-  std::size_t pick(Random& random) const {
-    double left = random.uniform() * std::accumulate(numbers_.begin(), numbers_.end(), 0.0);
-    std::size_t k = 0;
-    while (k + 1 < numbers_.size() && left >= numbers_[k]) left -= numbers_[k++];
-    return k;
-  }
-
-  /// The number of grains between r and r + dr goes with dr / r^Dim: r^(1 - Dim) is uniform.
-  static double uniform_in_mass(double low, double high, Random& random) {
-    constexpr int kPower = Dim - 1;
-    const double end = std::pow(low / high, kPower);
-    const double ratio = std::pow(1 - random.uniform() * (1 - end), -1.0 / kPower);
-    return std::min(low * ratio, high);
-  }
-
-  const RadiusLaw& law_;
-  std::vector<double> numbers_;  // relative ones, of the values of a list or between two sieves
-};
-
 template <int Dim>
 class Placer {
  public:
@@ -213,12 +154,6 @@ class Placer {
     return std::max(2 * small, large / 50);
   }
 
-  static Vec<Dim> direction(Random& random) {
-    Vec<Dim> v;
-    for (int d = 0; d < Dim; ++d) v[d] = random.normal();
-    return v.normalized();
-  }
-
   /// A refusal of a grain that was placed by hand or listed in a file: by the scene's key, or by
   /// file and line.
   SceneError refusal(std::size_t grain, const std::string& message) const {
@@ -266,25 +201,20 @@ class Placer {
     grain.omega = p.spin;
     grain.radius = p.radius;
     grain.pinned = p.pinned;
-    add(grain, p.material, -1);
+    grain.material = p.material;
+    grain.mass = scene_.materials[static_cast<std::size_t>(p.material)].density *
+                 grain_volume<Dim>(p.radius, scene_.depth);
+    add(grain, -1);
   }
 
-  void add(Grain<Dim> grain, int material, int group) {
-    const double density = scene_.materials[static_cast<std::size_t>(material)].density;
-    grain.mass = density * grain_volume<Dim>(grain.radius, scene_.depth);
-    grain.material = material;
+  void add(const Grain<Dim>& grain, int group) {
     occupied_.add(static_cast<int>(placed_.grains.size()), grain.position, grain.radius);
     placed_.grains.push_back(grain);
     placed_.group.push_back(group);
   }
 
-  bool clear_of_walls(const Vec<Dim>& x, double r) const {
-    return std::all_of(scene_.walls.begin(), scene_.walls.end(),
-                       [&](const Wall<Dim>& wall) { return wall.foot(x).distance >= r; });
-  }
-
   bool free(const Vec<Dim>& x, double r) const {
-    if (!clear_of_walls(x, r)) return false;
+    if (!clear_of_walls(scene_.walls, x, r)) return false;
     bool is_free = true;
     occupied_.for_each_near(x, r, [&](int j) {
       const Grain<Dim>& other = placed_.grains[static_cast<std::size_t>(j)];
@@ -316,16 +246,6 @@ class Placer {
                        "\"" + scene_.fills[index].name + "\": " + message);
   }
 
-  Grain<Dim> grain_of(const Fill<Dim>& f, double radius, const Vec<Dim>& x, Random& random) const {
-    Grain<Dim> grain;
-    grain.position = x;
-    grain.radius = radius;
-    grain.pinned = f.pinned;
-    grain.velocity = f.velocity;
-    if (f.random_speed > 0) grain.velocity += f.random_speed * direction(random);
-    return grain;
-  }
-
   int fill_lattice(const Fill<Dim>& f, int group, Random& random) {
     const double width = 2 * largest(f.radius) * kSpacing;
     const RadiusDraw<Dim> draw(f.radius);
@@ -347,7 +267,7 @@ class Placer {
         x[k] = f.low[k] + (static_cast<double>(at[d]) + 0.5) * width + random.uniform(-room, room);
       }
       if (free(x, r)) {
-        add(grain_of(f, r, x, random), f.material, group);
+        add(grain_from(scene_, f, r, x, random), group);
         ++held;
       }
       more = false;  // the first axis runs fastest, the last one is up
@@ -377,8 +297,8 @@ class Placer {
         for (int d = 0; d < Dim; ++d) x[d] = random.uniform(f.low[d] + r, f.high[d] - r);
         if (!(((x - f.low).array() >= r).all() && ((f.high - x).array() >= r).all())) continue;
         found = free(x, r);
-        if (found) add(grain_of(f, r, x, random), f.material, group);
-        if (found || !clear_of_walls(x, r)) continue;
+        if (found) add(grain_from(scene_, f, r, x, random), group);
+        if (found || !clear_of_walls(scene_.walls, x, r)) continue;
         ++overlapping;
         const double overlap = largest_overlap(x, r);
         if (overlap < smallest) {
@@ -391,7 +311,7 @@ class Placer {
       if (smallest == std::numeric_limits<double>::infinity()) {
         fail(static_cast<std::size_t>(group), "no grain fits into its region");
       }
-      add(grain_of(f, r, least_bad, random), f.material, group);
+      add(grain_from(scene_, f, r, least_bad, random), group);
     }
     if (full) make_room(f, group, asked);
   }

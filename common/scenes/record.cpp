@@ -60,7 +60,7 @@ struct Largest {
     overlap = std::max(overlap, statistics.largest_overlap);
     residual = std::max(residual, std::abs(lagrain::residual(now, start)));
     for (const double e : {now.kinetic, now.gravity - start.gravity, now.elastic, now.wall_work,
-                           now.dashpot, now.friction}) {
+                           now.dashpot, now.friction, now.carried}) {
       energy = std::max(energy, std::abs(e));
     }
   }
@@ -228,7 +228,9 @@ class Recorder {
 
 }  // namespace
 
-const char* version() { return LAGRAIN_VERSION; }
+const char* version() {
+  return LAGRAIN_VERSION;
+}
 
 template <int Dim>
 bool record(Run<Dim>& run, const RecordOptions& options) {

@@ -2,6 +2,7 @@
 #include <lagrain/run.hpp>
 
 #include "simulation_run.hpp"
+#include "traffic.hpp"
 
 #include <lagrain/all_pairs.hpp>
 #include <lagrain/cell_grid.hpp>
@@ -23,9 +24,20 @@ Run<Dim>::Run(Scene<Dim> scene, Placement<Dim> placement)
       pinned_(static_cast<int>(placement.grains.size()),
               [&](int i) { return placement.grains[static_cast<std::size_t>(i)].pinned ? 0 : 1; }) {
   for (const Grain<Dim>& grain : placement.grains) materials_.push_back(grain.material);
+  if (!scene_.inlets.empty() || !scene_.outlets.empty() || scene_.domain) {
+    traffic_ = std::make_unique<detail::Traffic<Dim>>(scene_);
+  }
   // A duration of whole steps must not gain one by rounding.
   steps_planned_ = static_cast<std::int64_t>(
       std::ceil(scene_.duration / scene_.time_step.seconds * (1 - 1e-12)));
+}
+
+template <int Dim>
+Run<Dim>::~Run() = default;
+
+template <int Dim>
+const TrafficCounts* Run<Dim>::traffic() const {
+  return traffic_ ? &traffic_->counts() : nullptr;
 }
 
 template <int Dim>
@@ -36,14 +48,43 @@ void Run<Dim>::started() {
 
 template <int Dim>
 void Run<Dim>::step(std::int64_t count) {
-  if (!scene_.audit) {
-    advance(count);
-    return;
+  constexpr int kLook = detail::Traffic<Dim>::kStepsBetweenLooks;
+  while (count > 0) {
+    std::int64_t at_once = scene_.audit ? 1 : count;
+    if (traffic_) at_once = std::min(at_once, kLook - steps() % kLook);
+    advance(at_once);
+    count -= at_once;
+    if (traffic_ && steps() % kLook == 0) look_after_traffic();
+    if (scene_.audit) check_contacts();
   }
-  for (; count > 0; --count) {
-    advance(1);
-    check_contacts();
+}
+
+template <int Dim>
+void Run<Dim>::look_after_traffic() {
+  const auto change = traffic_->look(*this);
+  if (change.leavers.empty() && change.newcomers.empty()) return;
+  exchange(change.leavers, change.newcomers);
+  std::vector<bool> pinned;
+  auto leaver = change.leavers.begin();
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    if (leaver != change.leavers.end() && static_cast<std::size_t>(*leaver) == i) {
+      ++leaver;
+      continue;
+    }
+    const std::size_t now = pinned.size();
+    materials_[now] = materials_[i];
+    groups_[now] = groups_[i];
+    pinned.push_back(pinned_[static_cast<int>(i)]);
   }
+  materials_.resize(pinned.size());
+  groups_.resize(pinned.size());
+  for (const Grain<Dim>& grain : change.newcomers) {
+    materials_.push_back(grain.material);
+    pinned.push_back(grain.pinned);
+  }
+  groups_.insert(groups_.end(), change.groups.begin(), change.groups.end());
+  pinned_ =
+      PinnedGrains(count(), [&](int i) { return pinned[static_cast<std::size_t>(i)] ? 0 : 1; });
 }
 
 template <int Dim>
@@ -67,6 +108,7 @@ void Run<Dim>::check_contacts() {
 template <int Dim>
 std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, AnyNeighbourhood<Dim> neighbourhood) {
   Placement<Dim> placement = place_grains(scene);
+  detail::expect_in_domain(scene, placement);
   switch (scene.friction) {
 #define LAGRAIN_CASE(word, Friction)                                         \
   case FrictionModel::word:                                                  \
@@ -98,11 +140,13 @@ AnyNeighbourhood<Dim> neighbourhood_of(const Scene<Dim>& scene) {
 template <int Dim>
 std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, int threads) {
   auto run = make_run(scene, neighbourhood_of(scene));
-  run->use_threads(threads > 0 ? threads : threads_that_pay(run->count()));
+  std::int64_t most = run->count();
+  for (const Inlet<Dim>& inlet : scene.inlets) most += detail::due(inlet, scene.duration);
+  run->use_threads(threads > 0 ? threads : threads_that_pay(most));
   return run;
 }
 
-int threads_that_pay(int grains) {
+int threads_that_pay(std::int64_t grains) {
   constexpr int kWorthWhile = 10000;
   if (grains < kWorthWhile) return 1;
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
@@ -146,6 +190,11 @@ std::string explain(const Run<Dim>& run) {
   line("neighbourhood", std::string(name_of(scene.neighbourhood)));
   line("grains", std::to_string(run.count()));
   line("walls", std::to_string(run.walls().size()));
+  for (const Inlet<Dim>& inlet : scene.inlets) {
+    line("inlet", "\"" + inlet.name + "\", " + shortest(inlet.rate) + " grains a second, " +
+                      std::to_string(detail::due(inlet, scene.duration)) + " in all");
+  }
+  for (const Outlet<Dim>& outlet : scene.outlets) line("outlet", "\"" + outlet.name + "\"");
   if (std::isfinite(scales.contact)) {
     line("contact time", rounded(scales.contact) + " s (the shortest)");
     line("time step", rounded(run.time_step()) + " s (1/" +
@@ -214,6 +263,30 @@ std::vector<std::pair<std::string, std::string>> facts(const Run<Dim>& run) {
   fact("largest overlap", rounded(100 * s.largest_overlap) + " % of the smaller radius");
   fact("kinetic energy", rounded(now.kinetic) + " J");
   fact("energy residual", rounded(residual(now, run.start())) + " J");
+  if (run.traffic() != nullptr) {
+    fact("energy carried", rounded(now.carried) + " J, in with grains less out with grains");
+    const TrafficCounts& traffic = *run.traffic();
+    for (std::size_t k = 0; k < traffic.inlets.size(); ++k) {
+      const TrafficCounts::In& in = traffic.inlets[k];
+      fact("inlet", "\"" + run.scene().inlets[k].name + "\": " + std::to_string(in.grains) +
+                        " grains came, " + std::to_string(in.waiting) +
+                        " wait for room, the longest wait was " + rounded(in.longest_wait) + " s");
+    }
+    for (std::size_t k = 0; k < traffic.outlets.size(); ++k) {
+      const TrafficCounts::Out& out = traffic.outlets[k];
+      fact("outlet", "\"" + run.scene().outlets[k].name + "\": " + std::to_string(out.grains) +
+                         " grains left, " + rounded(out.mass) + " kg");
+    }
+    if (run.scene().domain) {
+      std::string lost = std::to_string(traffic.lost) + " grains";
+      for (const TrafficCounts::Lost& grain : traffic.first_lost) {
+        lost += (&grain == traffic.first_lost.data() ? ": " : ", ") + std::to_string(grain.id) +
+                " at " + rounded(grain.time, 4) + " s";
+      }
+      if (traffic.lost > static_cast<std::int64_t>(traffic.first_lost.size())) lost += ", ...";
+      fact("left the domain", lost);
+    }
+  }
   fact("contacts audited", run.scene().audit ? std::to_string(run.audit().contacts()) + " in " +
                                                    std::to_string(run.audit().checks()) + " checks"
                                              : std::string("none"));

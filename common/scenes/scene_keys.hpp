@@ -25,6 +25,7 @@ inline constexpr Measure kNumber{"a number", {}};
 inline constexpr Measure kLength{"a length", {1, 0, 0}};
 inline constexpr Measure kTime{"a time", {0, 0, 1}};
 inline constexpr Measure kMass{"a mass", {0, 1, 0}};
+inline constexpr Measure kRate{"a rate", {0, 0, -1}};
 inline constexpr Measure kFrequency{"a frequency", {0, 0, -1}};
 inline constexpr Measure kAngle{"an angle", {}};
 inline constexpr Measure kAngularVelocity{"an angular velocity", {0, 0, -1}};
@@ -65,6 +66,9 @@ inline constexpr Key kMaterials{"materials"};
 inline constexpr Key kFill{"fill"};
 inline constexpr Key kGrain{"grain"};
 inline constexpr Key kGrains{"grains"};
+inline constexpr Key kInlet{"inlet"};
+inline constexpr Key kOutlet{"outlet"};
+inline constexpr Key kDomain{"domain"};
 inline constexpr Key kWall{"wall"};
 inline constexpr Key kBox{"box"};
 inline constexpr Key kMeasure{"measure"};
@@ -90,6 +94,8 @@ inline constexpr Key kHigh{"high", kLength};
 inline constexpr Key kArrangement{"arrangement"};
 inline constexpr Key kVelocity{"velocity", kSpeed};
 inline constexpr Key kRandomSpeed{"random", kSpeed, Range::not_negative};
+
+inline constexpr Key kRate{"rate", detail::kRate, Range::positive};
 
 inline constexpr Key kPosition{"position", kLength};
 inline constexpr Key kPinned{"pinned"};
@@ -134,7 +140,7 @@ inline constexpr Key kShifts{"shifts", kLength};
 
 inline constexpr Key kTurning{"turning"};
 inline constexpr Key kAbout{"about", kLength};
-inline constexpr Key kRate{"rate", kAngularVelocity};
+inline constexpr Key kTurningRate{"rate", kAngularVelocity};
 inline constexpr Key kAngle{"angle", detail::kAngle};
 
 inline constexpr Key kSlices{"slices"};

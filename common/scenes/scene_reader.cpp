@@ -2,9 +2,12 @@
 #include <lagrain/files.hpp>
 #include <lagrain/scene.hpp>
 
+#include "placing.hpp"
 #include "scene_keys.hpp"
 #include "stl.hpp"
 #include "toml_table.hpp"
+
+#include <lagrain/numbers.hpp>
 
 #include <charconv>
 #include <cmath>
@@ -217,14 +220,18 @@ class Reader {
     top_.for_each(keys::kFill, [&](TomlTable& s, int) { read_fill(s); });
     top_.for_each(keys::kGrain, [&](TomlTable& s, int) { read_grain(s); });
     top_.for_each(keys::kGrains, [&](TomlTable& s, int) { read_grain_file(s); });
+    top_.for_each(keys::kInlet, [&](TomlTable& s, int) { read_inlet(s); });
+    top_.for_each(keys::kOutlet, [&](TomlTable& s, int) { read_outlet(s); });
+    read_domain();
     top_.for_each(keys::kWall, [&](TomlTable& s, int index) { read_wall(s, index); });
     top_.for_each(keys::kBox, [&](TomlTable& s, int) { read_box(s); });
     top_.for_each(keys::kMeasure, [&](TomlTable& s, int index) { read_measure(s, index); });
     read_output();
     top_.finish();
-    if (scene_.fills.empty() && scene_.grains.empty() && scene_.grain_files.empty()) {
-      throw SceneError(file_.name +
-                       ": no grains: expected at least one [[fill]], [[grain]] or [[grains]]");
+    if (scene_.fills.empty() && scene_.grains.empty() && scene_.grain_files.empty() &&
+        scene_.inlets.empty()) {
+      throw SceneError(file_.name + ": no grains: expected at least one [[fill]], [[grain]], "
+                                    "[[grains]] or [[inlet]]");
     }
     return std::move(scene_);
   }
@@ -346,36 +353,129 @@ class Reader {
     if (fill.arrangement == Arrangement::random && !s.has(keys::kCount)) {
       s.missing(keys::kCount, "a number of grains");
     }
-    if (s.has(keys::kCount)) {
-      const std::int64_t count = s.integer(keys::kCount, 1, 1);
-      if (count > kMostGrains) {
-        s.expected(keys::kCount, "at most " + std::to_string(kMostGrains) + " grains");
-      }
-      fill.count = static_cast<int>(count);
-    }
+    fill.count = read_count(s);
     fill.radius = read_radius(s);
-    read_region(s, fill.low, fill.high);
+    const Region<Dim> region = read_region(s);
+    fill.low = region.low;
+    fill.high = region.high;
     fill.pinned = s.flag(keys::kPinned, fill.pinned);
     if (fill.pinned) {
       s.refuse(keys::kVelocity, "pinned grains stay; remove this line");
-    } else if (s.holds_table(keys::kVelocity)) {
-      TomlTable inner = s.table(keys::kVelocity);
-      fill.random_speed = inner.number(keys::kRandomSpeed);
-      inner.finish();
-    } else if (s.has(keys::kVelocity)) {
-      fill.velocity = s.vector<Dim>(keys::kVelocity);
+    } else {
+      read_velocity(s, fill);
     }
     scene_.fills.push_back(std::move(fill));
   }
 
-  void read_region(TomlTable& s, Vec<Dim>& low, Vec<Dim>& high) {
-    TomlTable region = s.table(keys::kRegion, "{ low = [...], high = [...] }");
-    low = region.template vector<Dim>(keys::kLow);
-    high = region.template vector<Dim>(keys::kHigh);
-    region.finish();
-    if (!(low.array() < high.array()).all()) {
+  static std::optional<int> read_count(TomlTable& s) {
+    if (!s.has(keys::kCount)) return {};
+    const std::int64_t count = s.integer(keys::kCount, 1, 1);
+    if (count > kMostGrains) {
+      s.expected(keys::kCount, "at most " + std::to_string(kMostGrains) + " grains");
+    }
+    return static_cast<int>(count);
+  }
+
+  static Region<Dim> read_region(TomlTable& s) {
+    TomlTable inner = s.table(keys::kRegion, "{ low = [...], high = [...] }");
+    const Region<Dim> region{inner.template vector<Dim>(keys::kLow),
+                             inner.template vector<Dim>(keys::kHigh)};
+    inner.finish();
+    if (!(region.low.array() < region.high.array()).all()) {
       s.fail(keys::kRegion, "expected low below high in every direction");
     }
+    return region;
+  }
+
+  static Region<Dim> read_corners(TomlTable& s) {
+    const Region<Dim> region{s.vector<Dim>(keys::kLow), s.vector<Dim>(keys::kHigh)};
+    if (!(region.low.array() < region.high.array()).all()) {
+      s.fail(keys::kHigh, "expected low below high in every direction");
+    }
+    return region;
+  }
+
+  /// Of a fill or an inlet.
+  template <class Source>
+  static void read_velocity(TomlTable& s, Source& source) {
+    if (s.holds_table(keys::kVelocity)) {
+      TomlTable inner = s.table(keys::kVelocity);
+      source.random_speed = inner.number(keys::kRandomSpeed);
+      inner.finish();
+    } else if (s.has(keys::kVelocity)) {
+      source.velocity = s.vector<Dim>(keys::kVelocity);
+    }
+  }
+
+  void read_inlet(TomlTable& s) {
+    Inlet<Dim> inlet;
+    inlet.name = s.text(keys::kName, "inlet " + std::to_string(scene_.inlets.size() + 1));
+    expect_new_door(s, inlet.name);
+    inlet.material = material_of(s, true);
+    inlet.radius = read_radius(s);
+    inlet.region = read_region(s);
+    const double width = (inlet.region.high - inlet.region.low).minCoeff();
+    if (width * (1 + 1e-12) < 2 * detail::largest(inlet.radius)) {
+      s.fail(keys::kRegion, "is " + shortest(width) + " m wide, too narrow for grains " +
+                                shortest(2 * detail::largest(inlet.radius)) + " m wide");
+    }
+    inlet.rate = s.number(keys::kRate);
+    read_times(s, inlet);
+    inlet.count = read_count(s);
+    read_velocity(s, inlet);
+    expect_no_fourth_order("grains come in");
+    scene_.inlets.push_back(std::move(inlet));
+  }
+
+  void read_outlet(TomlTable& s) {
+    Outlet<Dim> outlet;
+    outlet.name = s.text(keys::kName, "outlet " + std::to_string(scene_.outlets.size() + 1));
+    expect_new_door(s, outlet.name);
+    outlet.region = read_corners(s);
+    for (const Inlet<Dim>& inlet : scene_.inlets) {
+      if ((outlet.region.low.array() <= inlet.region.high.array()).all() &&
+          (outlet.region.high.array() >= inlet.region.low.array()).all()) {
+        s.fail(keys::kLow, "reaches into inlet \"" + inlet.name + "\": its grains would leave");
+      }
+    }
+    expect_no_fourth_order("grains leave");
+    scene_.outlets.push_back(std::move(outlet));
+  }
+
+  void read_domain() {
+    if (!top_.has(keys::kDomain)) return;
+    TomlTable s = top_.table(keys::kDomain);
+    const Region<Dim> domain = read_corners(s);
+    s.finish();
+    const auto holds = [&](const Vec<Dim>& x) {
+      return (x.array() >= domain.low.array()).all() && (x.array() <= domain.high.array()).all();
+    };
+    for (const Inlet<Dim>& inlet : scene_.inlets) {
+      if (holds(inlet.region.low) && holds(inlet.region.high)) continue;
+      top_.fail(keys::kDomain, "does not hold inlet \"" + inlet.name + "\"");
+    }
+    for (const Outlet<Dim>& outlet : scene_.outlets) {
+      if (holds(outlet.region.low.cwiseMax(domain.low).cwiseMin(outlet.region.high))) continue;
+      top_.fail(keys::kDomain,
+                "ends before outlet \"" + outlet.name + "\", which no grain reaches");
+    }
+    expect_no_fourth_order("grains leave");
+    scene_.domain = domain;
+  }
+
+  /// Inlets and outlets are columns of the series.
+  void expect_new_door(TomlTable& s, const std::string& name) {
+    const auto called = [&](const auto& door) { return door.name == name; };
+    if (std::any_of(scene_.inlets.begin(), scene_.inlets.end(), called) ||
+        std::any_of(scene_.outlets.begin(), scene_.outlets.end(), called)) {
+      s.fail(keys::kName, "a second \"" + name + "\"");
+    }
+  }
+
+  void expect_no_fourth_order(const std::string& what) {
+    if (scene_.integrator != IntegratorModel::fourth_order) return;
+    top_.fail(keys::kIntegrator,
+              "\"fourth order\" keeps all grains, but here " + what + "; choose another one");
   }
 
   void read_grain(TomlTable& s) {
@@ -807,7 +907,7 @@ class Reader {
     }
     const Vec<Dim> about = s.has(keys::kAbout) ? s.vector<Dim>(keys::kAbout) : wall.home;
     if (type == detail::TurningType::steady) {
-      Turn<Dim> turn{axis, s.number(keys::kRate), about};
+      Turn<Dim> turn{axis, s.number(keys::kTurningRate), about};
       read_times(s, turn);
       wall.turning = turn;
     } else {
@@ -831,7 +931,9 @@ class Reader {
     for (const MeasuredRegion<Dim>& other : scene_.measures) {
       if (other.name == measure.name) s.fail(keys::kName, "a second \"" + measure.name + "\"");
     }
-    read_region(s, measure.low, measure.high);
+    const Region<Dim> region = read_region(s);
+    measure.low = region.low;
+    measure.high = region.high;
     const std::int64_t slices = s.integer(keys::kSlices, 1, measure.slices);
     if (slices > kMostSlices) {
       s.expected(keys::kSlices, "at most " + std::to_string(kMostSlices) + " slices");
@@ -861,7 +963,9 @@ class Reader {
 };
 
 /// Scenes are called by their file's name in messages, without the folder.
-std::string called(const std::filesystem::path& file) { return file.filename().string(); }
+std::string called(const std::filesystem::path& file) {
+  return file.filename().string();
+}
 
 int dimension_of(const toml::table& root, const std::string& name) {
   const std::string key(keys::kDimension.name);

@@ -23,8 +23,12 @@ std::string in_toml(double value) {
   if (fails_as_integer && text.find_first_of(".en") == std::string::npos) text += ".0";
   return text;
 }
-std::string in_toml(int value) { return std::to_string(value); }
-std::string in_toml(bool value) { return value ? "true" : "false"; }
+std::string in_toml(int value) {
+  return std::to_string(value);
+}
+std::string in_toml(bool value) {
+  return value ? "true" : "false";
+}
 std::string in_toml(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -128,6 +132,12 @@ class Writer {
     for (const Fill<Dim>& fill : scene_.fills) write_fill(fill);
     for (const PlacedGrain<Dim>& grain : scene_.grains) write_grain(grain);
     for (const GrainFile<Dim>& grains : scene_.grain_files) write_grain_file(grains);
+    for (const Inlet<Dim>& inlet : scene_.inlets) write_inlet(inlet);
+    for (const Outlet<Dim>& outlet : scene_.outlets) write_outlet(outlet);
+    if (scene_.domain) {
+      out_.table("[" + std::string(keys::kDomain.name) + "]");
+      write_corners(*scene_.domain);
+    }
     for (const Wall<Dim>& wall : scene_.walls) write_wall(wall);
     for (const MeasuredRegion<Dim>& measure : scene_.measures) write_measure(measure);
     write_output();
@@ -177,6 +187,55 @@ class Writer {
     out_.add(keys::kName, std::string_view(fill.name));
     out_.add(keys::kMaterial, material_name(fill.material));
     if (fill.count) out_.add(keys::kCount, *fill.count);
+    write_radius(fill.radius);
+    write_region(fill.low, fill.high);
+    out_.add(keys::kArrangement, text_of(detail::kArrangementWords, fill.arrangement));
+    if (fill.pinned) {
+      out_.add(keys::kPinned, true);
+    } else {
+      write_velocity(fill);
+    }
+  }
+
+  void write_inlet(const Inlet<Dim>& inlet) {
+    one_of(keys::kInlet);
+    out_.add(keys::kName, std::string_view(inlet.name));
+    out_.add(keys::kMaterial, material_name(inlet.material));
+    write_radius(inlet.radius);
+    write_region(inlet.region.low, inlet.region.high);
+    out_.add(keys::kRate, inlet.rate);
+    out_.add(keys::kStart, inlet.start);
+    if (std::isfinite(inlet.stop)) out_.add(keys::kStop, inlet.stop);
+    if (inlet.count) out_.add(keys::kCount, *inlet.count);
+    write_velocity(inlet);
+  }
+
+  void write_outlet(const Outlet<Dim>& outlet) {
+    one_of(keys::kOutlet);
+    out_.add(keys::kName, std::string_view(outlet.name));
+    write_corners(outlet.region);
+  }
+
+  void write_corners(const Region<Dim>& region) {
+    out_.add(keys::kLow, region.low);
+    out_.add(keys::kHigh, region.high);
+  }
+
+  void write_region(const Vec<Dim>& low, const Vec<Dim>& high) {
+    out_.as_it_is(keys::kRegion, Inline{}.add(keys::kLow, low).add(keys::kHigh, high).text());
+  }
+
+  /// Of a fill or an inlet.
+  template <class Source>
+  void write_velocity(const Source& source) {
+    if (source.random_speed > 0) {
+      out_.as_it_is(keys::kVelocity, Inline{}.add(keys::kRandomSpeed, source.random_speed).text());
+    } else {
+      out_.add(keys::kVelocity, source.velocity);
+    }
+  }
+
+  void write_radius(const RadiusLaw& radius_law) {
     std::visit(Overloaded{[&](double radius) { out_.add(keys::kRadius, radius); },
                           [&](const UniformRadius& law) {
                             out_.as_it_is(keys::kRadius,
@@ -199,17 +258,7 @@ class Writer {
                                                              .add(keys::kPassing, law.passing)
                                                              .text());
                           }},
-               fill.radius);
-    out_.as_it_is(keys::kRegion,
-                  Inline{}.add(keys::kLow, fill.low).add(keys::kHigh, fill.high).text());
-    out_.add(keys::kArrangement, text_of(detail::kArrangementWords, fill.arrangement));
-    if (fill.pinned) {
-      out_.add(keys::kPinned, true);
-    } else if (fill.random_speed > 0) {
-      out_.as_it_is(keys::kVelocity, Inline{}.add(keys::kRandomSpeed, fill.random_speed).text());
-    } else {
-      out_.add(keys::kVelocity, fill.velocity);
-    }
+               radius_law);
   }
 
   void write_grain(const PlacedGrain<Dim>& grain) {
@@ -349,7 +398,7 @@ class Writer {
     std::visit(Overloaded{[](const Upright&) {},
                           [&](const Turn<Dim>& m) {
                             write(detail::TurningType::steady, m,
-                                  [&] { turning.add(keys::kRate, m.rate); });
+                                  [&] { turning.add(keys::kTurningRate, m.rate); });
                           },
                           [&](const Swing<Dim>& m) {
                             write(detail::TurningType::swing, m, [&] {
@@ -385,9 +434,15 @@ class Writer {
 
 }  // namespace
 
-std::string_view name_of(NormalModel model) { return description_of(model).word; }
-std::string_view name_of(FrictionModel model) { return description_of(model).word; }
-std::string_view name_of(IntegratorModel model) { return text_of(detail::kIntegratorWords, model); }
+std::string_view name_of(NormalModel model) {
+  return description_of(model).word;
+}
+std::string_view name_of(FrictionModel model) {
+  return description_of(model).word;
+}
+std::string_view name_of(IntegratorModel model) {
+  return text_of(detail::kIntegratorWords, model);
+}
 std::string_view name_of(NeighbourhoodModel model) {
   return text_of(detail::kNeighbourhoodWords, model);
 }

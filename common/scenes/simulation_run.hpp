@@ -3,6 +3,8 @@
 /// @file
 /// Private to the sources of runs: the one implementation of Run, templated on the model.
 
+#include "placing.hpp"
+
 #include <lagrain/compiled_kernels.hpp>
 #include <lagrain/contact_laws.hpp>
 #include <lagrain/integrator.hpp>
@@ -43,6 +45,7 @@ class SimulationRun final : public Run<Dim> {
   }
   const Eigen::VectorXd& radii() const override { return sim_.radii(); }
   const Eigen::VectorXd& masses() const override { return sim_.masses(); }
+  const std::vector<int>& ids() const override { return sim_.ids(); }
   const std::vector<Wall<Dim>>& walls() const override { return sim_.walls(); }
   ContactStatistics statistics() const override { return contact_statistics(sim_); }
   Ledger ledger() const override { return energy_ledger(sim_); }
@@ -90,6 +93,10 @@ class SimulationRun final : public Run<Dim> {
 
  private:
   void advance(std::int64_t count) override { sim_.step(count); }
+  void exchange(const std::vector<int>& leavers,
+                const std::vector<Grain<Dim>>& newcomers) override {
+    sim_.exchange(leavers, make_grains<Dim, Law::needs>(newcomers));
+  }
   bool near_is_valid() const override { return sim_.near_list_holds(); }
 
   TimeScales scales_;
@@ -107,7 +114,9 @@ std::unique_ptr<Run<Dim>> make_run_of(const Scene<Dim>& scene, Placement<Dim> pl
   for (const PairLaw& pair : scene.pairs) laws.set(pair.a, pair.b, law(pair.law));
   auto grains = make_grains<Dim, Law::needs>(placement.grains);
 
-  const TimeScales scales = time_scales(grains, laws, scene.walls);
+  std::vector<Grain<Dim>> all = smallest_newcomers(scene);
+  all.insert(all.end(), placement.grains.begin(), placement.grains.end());
+  const TimeScales scales = time_scales(make_grains<Dim, Law::needs>(all), laws, scene.walls);
   if (scene.time_step.seconds <= 0 && !std::isfinite(scales.contact)) {
     throw scene.error("time_step",
                       "nothing in the scene can move, so no contact sets a step; give one in "

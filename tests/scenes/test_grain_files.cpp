@@ -296,7 +296,7 @@ TEST_SUITE("grain files") {
       for (int c = 0; c < length; ++c) {
         const double u = random.uniform();
         bytes += k % 2 == 0
-                     ? static_cast<char>(256 * u)
+                     ? static_cast<char>(static_cast<int>(256 * u))
                      : likely[static_cast<std::size_t>(u * static_cast<double>(likely.size()))];
       }
       // Alone, behind a sound beginning, or within it.

@@ -142,6 +142,19 @@ position = [3, 3]
 radius = 0.01
 [[grains]]
 file = "bed.csv"
+[[inlet]]
+rate = 1
+[inlet.region]
+low = [0, 0]
+high = [1, 1]
+[inlet.radius]
+uniform = [0.01, 0.01]
+[[outlet]]
+low = [2, 2]
+high = [3, 3]
+[domain]
+low = [-9, -9]
+high = [9, 9]
 [[wall]]
 point = [0, 0]
 normal = [0, 1]
@@ -284,7 +297,7 @@ TEST_SUITE("scene page") {
     const Page page = read_page();
     const std::set<std::string> keys = all_keys();
     REQUIRE(keys.size() > 50);
-    REQUIRE(page.tables.size() == 18);
+    REQUIRE(page.tables.size() == 21);
     std::set<std::string> explained;
     for (const auto& table : page.tables) {
       const std::string& path = table.first;

@@ -5,7 +5,7 @@
 ///
 ///     scene.toml       the scene with every default filled in; reads back to the same run
 ///     grains_N.csv     copies of the files of grains that it reads, if it reads any
-///     series.csv       energies, contacts, overlaps and wall forces against time
+///     series.csv       energies, contacts, overlaps, who came and left, wall forces against time
 ///     frames.csv       number, step and time of each frame
 ///     frames/NNNN.csv  the grains; contacts/NNNN.csv beside it if the scene asks for contacts
 ///     summary.txt      what the run was and how far it can be trusted

@@ -20,6 +20,11 @@
 
 namespace lagrain {
 
+namespace detail {
+template <int Dim>
+class Traffic;
+}
+
 /// One contact, for output and pictures.
 template <int Dim>
 struct ContactRecord {
@@ -31,6 +36,32 @@ struct ContactRecord {
   Vec<Dim> force = Vec<Dim>::Zero();   ///< on i [N]
 };
 
+/// Who has come and left since the start, one entry for each inlet and outlet of the scene.
+struct TrafficCounts {
+  static constexpr std::size_t kNamed = 5;  ///< of those lost, so many are named
+  /// Of an inlet.
+  struct In {
+    std::int64_t grains = 0;   ///< that came
+    std::int64_t waiting = 0;  ///< that were due when it was looked last, and found no room
+    double longest_wait = 0;   ///< of a grain since it was due [s]
+  };
+  /// Of an outlet.
+  struct Out {
+    std::int64_t grains = 0;  ///< that left
+    double mass = 0;          ///< of these [kg]
+  };
+  /// A grain that left the domain.
+  struct Lost {
+    int id = 0;
+    double time = 0;  ///< [s]
+  };
+
+  std::vector<In> inlets;
+  std::vector<Out> outlets;
+  std::int64_t lost = 0;         ///< that left the domain
+  std::vector<Lost> first_lost;  ///< the first of these
+};
+
 /// What a model stores.
 struct ModelSize {
   std::size_t per_grain = 0;        ///< bytes of state of a grain
@@ -40,11 +71,12 @@ struct ModelSize {
 };
 
 /// A simulation behind a plain interface: one virtual call per step, none within. The types
-/// behind it are those that the scene names; make_run chooses them.
+/// behind it are those that the scene names; make_run chooses them. Grains come and leave as the
+/// scene's inlets, outlets and domain say; what is asked for is that of the N grains present.
 template <int Dim>
 class Run {
  public:
-  virtual ~Run() = default;
+  virtual ~Run();
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
 
@@ -66,8 +98,10 @@ class Run {
   virtual const Columns<Dim>& velocities() const = 0;  ///< Dim x N [m/s]
   /// N columns [rad/s]; null where nothing spins.
   virtual const Columns<kSpinDim<Dim>>* spins() const = 0;
-  virtual const Eigen::VectorXd& radii() const = 0;                ///< N [m]
-  virtual const Eigen::VectorXd& masses() const = 0;               ///< N [kg]
+  virtual const Eigen::VectorXd& radii() const = 0;   ///< N [m]
+  virtual const Eigen::VectorXd& masses() const = 0;  ///< N [kg]
+  /// What a grain keeps while others come and leave; empty while grain i has the id i.
+  virtual const std::vector<int>& ids() const = 0;
   virtual const std::vector<Wall<Dim>>& walls() const = 0;         ///< as they are now
   virtual std::vector<ContactRecord<Dim>> contacts() const = 0;    ///< grains first, in order
   virtual ContactStatistics statistics() const = 0;                ///< of the contacts now
@@ -84,11 +118,16 @@ class Run {
   virtual void use_threads(int threads) = 0;
 
   int count() const { return static_cast<int>(radii().size()); }  ///< N
+  /// The id of the grain in column i.
+  int id(int i) const { return ids().empty() ? i : ids()[static_cast<std::size_t>(i)]; }
+  /// Who has come and left; null where the scene says nothing of that.
+  const TrafficCounts* traffic() const;
   /// As it runs: the time step is in seconds.
   const Scene<Dim>& scene() const { return scene_; }
-  double time_step() const { return scene_.time_step.seconds; }          ///< [s]
-  const std::vector<int>& materials() const { return materials_; }       ///< N, of the scene's
-  const std::vector<int>& groups() const { return groups_; }             ///< N, see Placement
+  double time_step() const { return scene_.time_step.seconds; }     ///< [s]
+  const std::vector<int>& materials() const { return materials_; }  ///< N, of the scene's
+  /// N: index into the scene's fills and then inlets; -1 for a grain placed by hand.
+  const std::vector<int>& groups() const { return groups_; }
   const PinnedGrains& pinned() const { return pinned_; }                 ///< what nothing moves
   const Ledger& start() const { return start_; }                         ///< the ledger at time 0
   double energy_residual() const { return residual(ledger(), start_); }  ///< [J]
@@ -101,12 +140,17 @@ class Run {
 
  private:
   virtual void advance(std::int64_t count) = 0;
+  /// See Simulation::exchange.
+  virtual void exchange(const std::vector<int>& leavers,
+                        const std::vector<Grain<Dim>>& newcomers) = 0;
   /// Whether the near list holds for the places as they are; between the stages of a step it may
   /// just have expired.
   virtual bool near_is_valid() const = 0;
   void check_contacts();
+  void look_after_traffic();
 
   Scene<Dim> scene_;
+  std::unique_ptr<detail::Traffic<Dim>> traffic_;  // null where nobody comes or leaves
   std::vector<int> materials_;
   std::vector<int> groups_;
   PinnedGrains pinned_;
@@ -130,7 +174,7 @@ std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, AnyNeighbourhood<Dim
 
 /// Threads worth starting for so many grains: one until a step is long against waking them up, then
 /// all cores.
-int threads_that_pay(int grains);
+int threads_that_pay(std::int64_t grains);
 
 /// What a run is made of and what it will cost, as text.
 template <int Dim>

@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -92,6 +93,35 @@ struct Fill {
   bool pinned = false;                             ///< all of them stay where they are
 };
 
+/// An axis-parallel box.
+template <int Dim>
+struct Region {
+  Vec<Dim> low = Vec<Dim>::Zero();   ///< corner with the lowest coordinates [m]
+  Vec<Dim> high = Vec<Dim>::Zero();  ///< corner with the highest ones [m]
+};
+
+/// Where grains come in, one by one.
+template <int Dim>
+struct Inlet {
+  std::string name;                                       ///< as the scene calls it
+  int material = 0;                                       ///< place among the materials
+  RadiusLaw radius;                                       ///< of its grains
+  Region<Dim> region;                                     ///< that holds each of them as it comes
+  double rate = 0;                                        ///< [1/s]
+  double start = 0;                                       ///< [s]
+  double stop = std::numeric_limits<double>::infinity();  ///< [s]
+  std::optional<int> count;                               ///< in all; none: without a limit
+  Vec<Dim> velocity = Vec<Dim>::Zero();                   ///< [m/s]
+  double random_speed = 0;                                ///< added, in a random direction [m/s]
+};
+
+/// Where grains leave: those whose centres come into its region.
+template <int Dim>
+struct Outlet {
+  std::string name;    ///< as the scene calls it
+  Region<Dim> region;  ///< both faces of each side belong to it
+};
+
 /// A grain placed by hand.
 template <int Dim>
 struct PlacedGrain {
@@ -164,6 +194,9 @@ struct Scene {
   std::vector<Fill<Dim>> fills;               ///< groups of grains
   std::vector<PlacedGrain<Dim>> grains;       ///< placed by hand
   std::vector<GrainFile<Dim>> grain_files;    ///< listed in files
+  std::vector<Inlet<Dim>> inlets;             ///< where grains come in
+  std::vector<Outlet<Dim>> outlets;           ///< where they leave
+  std::optional<Region<Dim>> domain;          ///< whose leavers are taken out; none: no limit
   std::vector<Wall<Dim>> walls;               ///< single ones, then the sides of boxes
   std::vector<MeasuredRegion<Dim>> measures;  ///< columns of the series
   OutputPlan output;                          ///< what is written
