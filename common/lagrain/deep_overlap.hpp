@@ -42,8 +42,8 @@ double energy_to_hold(const Law& law, const Touch<Dim>& touch) {
 }
 
 /// How many times as stiff a contact has to be if its overlap is to stay below a limit [-]: then
-/// the spring holds at the limit all that it has to hold. (The energy of a spring goes with its
-/// stiffness.)
+/// the spring holds at the limit all that it has to hold. (The energy of a spring is proportional
+/// to its stiffness.)
 /// @param touch  the contact as it is
 /// @param limit  overlap [m]
 template <int Dim, class Law>

@@ -19,8 +19,9 @@ namespace lagrain {
 
 /// Grains in *slots*: records in the order of Hilbert's curve, so that neighbours in space are
 /// neighbours in memory. They get new slots when they have mixed. Outside, everything speaks of the
-/// grains' numbers, from 0 to N - 1. They are in the order of the grains' *ids*, which a grain keeps
-/// as long as it is there and no other one gets. Until grains come or leave, numbers are ids.
+/// grains' numbers, from 0 to N - 1. They are in the order of the grains' *ids*: a grain keeps its
+/// id as long as it is there, and no other one gets it. Until grains come or leave, numbers and ids
+/// are the same.
 template <int Dim, Needs needs>
 class GrainStore {
  public:

@@ -142,8 +142,7 @@ class Simulation : public GrainSystem<Dim, Law, N> {
 
  private:
   using System::advance_walls, System::exchange_grains, System::expect_no_passage,
-      System::for_each_block,
-      System::sort_grains, System::update_triangulation;
+      System::for_each_block, System::sort_grains, System::update_triangulation;
   using System::flow_, System::force_step_, System::forces_, System::laws_, System::measuring_,
       System::near_, System::setting_, System::steps_, System::store_, System::strays_,
       System::times_, System::walls_, System::watch_;

@@ -39,8 +39,8 @@ struct Response {
   Vec<Dim, Real> force = Vec<Dim, Real>::Zero();  ///< on i [N]; j receives the opposite
   Real dashpot_loss = 0;   ///< energy taken by the normal dashpot in this step [J]
   Real friction_loss = 0;  ///< energy taken by sliding, rolling, and the damping of both [J]
-  /// On i, besides that of the force [N m]; j receives the opposite. Only of laws that resist
-  /// rolling.
+  /// On i, besides that of the force [N m]; j receives the opposite. Only laws that resist rolling
+  /// give one.
   SpinVec<Dim, Real> moment = SpinVec<Dim, Real>::Zero();
 };
 

@@ -232,8 +232,8 @@ class Softness {
  public:
   explicit Softness(const LawNumbers& numbers) : law_(NormalLawEntry<Normal>::make(numbers)) {}
 
-  /// Overlap, of the radius [-], of the lowest grain of a column with the floor, or with the next
-  /// grain.
+  /// Overlap, of the radius [-], of the lowest grain of a column with what is below it: the floor,
+  /// or another grain.
   double under(const Column& column, double gravity) const {
     if (column.count == 0) return 0;
     const double radius = column.radii / column.count;

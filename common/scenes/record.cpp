@@ -228,9 +228,7 @@ class Recorder {
 
 }  // namespace
 
-const char* version() {
-  return LAGRAIN_VERSION;
-}
+const char* version() { return LAGRAIN_VERSION; }
 
 template <int Dim>
 bool record(Run<Dim>& run, const RecordOptions& options) {

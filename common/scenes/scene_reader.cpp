@@ -230,8 +230,9 @@ class Reader {
     top_.finish();
     if (scene_.fills.empty() && scene_.grains.empty() && scene_.grain_files.empty() &&
         scene_.inlets.empty()) {
-      throw SceneError(file_.name + ": no grains: expected at least one [[fill]], [[grain]], "
-                                    "[[grains]] or [[inlet]]");
+      throw SceneError(file_.name +
+                       ": no grains: expected at least one [[fill]], [[grain]], "
+                       "[[grains]] or [[inlet]]");
     }
     return std::move(scene_);
   }
@@ -963,9 +964,7 @@ class Reader {
 };
 
 /// Scenes are called by their file's name in messages, without the folder.
-std::string called(const std::filesystem::path& file) {
-  return file.filename().string();
-}
+std::string called(const std::filesystem::path& file) { return file.filename().string(); }
 
 int dimension_of(const toml::table& root, const std::string& name) {
   const std::string key(keys::kDimension.name);

@@ -23,12 +23,8 @@ std::string in_toml(double value) {
   if (fails_as_integer && text.find_first_of(".en") == std::string::npos) text += ".0";
   return text;
 }
-std::string in_toml(int value) {
-  return std::to_string(value);
-}
-std::string in_toml(bool value) {
-  return value ? "true" : "false";
-}
+std::string in_toml(int value) { return std::to_string(value); }
+std::string in_toml(bool value) { return value ? "true" : "false"; }
 std::string in_toml(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -434,15 +430,9 @@ class Writer {
 
 }  // namespace
 
-std::string_view name_of(NormalModel model) {
-  return description_of(model).word;
-}
-std::string_view name_of(FrictionModel model) {
-  return description_of(model).word;
-}
-std::string_view name_of(IntegratorModel model) {
-  return text_of(detail::kIntegratorWords, model);
-}
+std::string_view name_of(NormalModel model) { return description_of(model).word; }
+std::string_view name_of(FrictionModel model) { return description_of(model).word; }
+std::string_view name_of(IntegratorModel model) { return text_of(detail::kIntegratorWords, model); }
 std::string_view name_of(NeighbourhoodModel model) {
   return text_of(detail::kNeighbourhoodWords, model);
 }

@@ -95,10 +95,8 @@ TEST_SUITE("grain files") {
   TEST_CASE("columns stand in any order, with or without units; what is not known is passed over") {
     const Bed bed(
         kScene,
-        "\xEF\xBB\xBF"
-        "id[-],radius[m],\"y[m]\" , x,force[N],material[-],vy[m/s],vx[m/s],omega[rad/s]\r\n"
-        "7,0.25,+1.5, -2 ,9,rock,-0.125,1e-3,3\r\n"
-        "\r\n"
+        "\xEF\xBB\xBFnumber[-],radius[m],\"y[m]\" , x,force[N],material[-],vy[m/s],vx[m/s],omega[rad/s]\r\n"
+        "7,0.25,+1.5, -2 ,9,rock,-0.125,1e-3,3\r\n\r\n"
         "8,0.125,2,3,nan,\"glass, green\",0,0,-0\n");
 
     const auto placed = bed.place<2>();

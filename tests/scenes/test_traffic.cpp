@@ -301,8 +301,8 @@ TEST_SUITE("grains that come and leave, in scenes") {
   TEST_CASE("the time step is safe for grains that come") {
     const auto dust = with(kFall, "radius = 0.01\n", "radius = { uniform = [0.001, 0.01] }\n");
     const auto placed = with(kFall, "[[box]]",
-                             "[[grain]]\nposition = [0, 0, 0.2]\nradius = 0.001\nmaterial = "
-                             "\"glass\"\n[[box]]");
+                             "[[grain]]\nposition = [0, 0, 0.2]\nradius = 0.001\n"
+                             "material = \"glass\"\n[[box]]");
     const auto shortest_contact = [](const std::string& text) {
       return make_run(parse_scene<3>(text, "s.toml"))->time_scales().contact;
     };

@@ -10,8 +10,8 @@
 
 namespace lagrain {
 
-/// The grains of a scene at time 0: those placed by hand, those of files, then the fills, in
-/// order.
+/// The grains of a scene at time 0: those placed by hand, those of files, then the fills, all in
+/// the scene's order.
 template <int Dim>
 struct Placement {
   std::vector<Grain<Dim>> grains;  ///< N

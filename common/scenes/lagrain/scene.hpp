@@ -225,8 +225,8 @@ int scene_dimension(const std::filesystem::path& file);
 template <int Dim>
 Scene<Dim> read_scene(const std::filesystem::path& file);
 
-/// The same from text; `name` stands for the file in messages, and paths begin where the program
-/// runs.
+/// The same from text; `name` stands for the file in messages, and paths begin in the program's
+/// working folder.
 template <int Dim>
 Scene<Dim> parse_scene(std::string_view text, const std::string& name);
 
