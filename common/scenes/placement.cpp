@@ -106,9 +106,12 @@ class Placer {
  public:
   explicit Placer(const Scene<Dim>& scene)
       : scene_(scene),
+        walls_(scene.walls),
         listed_(read_files(scene)),
         cell_(cell_size(scene, listed_)),
-        occupied_(cell_) {}
+        occupied_(cell_) {
+    for (Wall<Dim>& wall : walls_) wall.advance(0, 0);
+  }
 
   Placement<Dim> place() {
     for (const PlacedGrain<Dim>& grain : scene_.grains) place_by_hand(grain);
@@ -179,7 +182,7 @@ class Placer {
                                 " % of the smaller radius (limit " + shortest(100 * limit) +
                                 " %); largest_initial_overlap allows more");
     };
-    for (const Wall<Dim>& wall : scene_.walls) {
+    for (const Wall<Dim>& wall : walls_) {
       if (p.pinned && !wall.yields()) continue;  // neither can move
       const double distance = wall.foot(p.position).distance;
       if (distance < 0) throw refusal(index, "lies behind wall \"" + wall.name + "\"");
@@ -214,7 +217,7 @@ class Placer {
   }
 
   bool free(const Vec<Dim>& x, double r) const {
-    if (!clear_of_walls(scene_.walls, x, r)) return false;
+    if (!clear_of_walls(walls_, x, r)) return false;
     bool is_free = true;
     occupied_.for_each_near(x, r, [&](int j) {
       const Grain<Dim>& other = placed_.grains[static_cast<std::size_t>(j)];
@@ -298,7 +301,7 @@ class Placer {
         if (!(((x - f.low).array() >= r).all() && ((f.high - x).array() >= r).all())) continue;
         found = free(x, r);
         if (found) add(grain_from(scene_, f, r, x, random), group);
-        if (found || !clear_of_walls(scene_.walls, x, r)) continue;
+        if (found || !clear_of_walls(walls_, x, r)) continue;
         ++overlapping;
         const double overlap = largest_overlap(x, r);
         if (overlap < smallest) {
@@ -380,7 +383,7 @@ class Placer {
       chosen.push_back(i);
       grains.push_back(grain);
     }
-    std::vector<Wall<Dim>> walls = scene_.walls;
+    std::vector<Wall<Dim>> walls = walls_;
     for (int d = 0; d < Dim; ++d) {
       walls.push_back(Wall<Dim>::half_space("low", f.low, Vec<Dim>::Unit(d)));
       walls.push_back(Wall<Dim>::half_space("high", f.high, -Vec<Dim>::Unit(d)));
@@ -403,6 +406,7 @@ class Placer {
   }
 
   const Scene<Dim>& scene_;
+  std::vector<Wall<Dim>> walls_;  // where the run begins: a path may begin elsewhere
   std::vector<detail::ListedGrains<Dim>> listed_;  // of each file
   double cell_;                                    // [m]
   Occupied<Dim> occupied_;

@@ -32,7 +32,7 @@ struct Syrup {
   static void finish(V&, V&, const V&, const V&, double) {}
 };
 
-/// Moves the grains that are not pinned until none overlaps another or a wall; walls do not move.
+/// Moves the grains that are not pinned until none overlaps another or a wall; walls stay as they are.
 /// Springs that are a little longer than the grains do it, so that the last contact opens after
 /// finitely many steps.
 ///
@@ -54,7 +54,12 @@ double push_apart(std::vector<Grain<Dim>>& grains, std::vector<Wall<Dim>> walls,
     grain.velocity.setZero();
     grain.omega.setZero();
   }
-  for (Wall<Dim>& wall : walls) wall.motion = Fixed{};
+  for (Wall<Dim>& wall : walls) {
+    wall.velocity.setZero();
+    wall.motion = Fixed{};
+    wall.turning = Upright{};
+    wall.until = std::numeric_limits<double>::infinity();
+  }
   const LinearSpring spring{.stiffness = 1};
   auto state = make_grains<Dim, LinearSpring::needs>(soft);
   Setting<Dim> setting;

@@ -311,6 +311,43 @@ TEST_SUITE("placement") {
     CHECK(nearest >= 0);
   }
 
+  TEST_CASE_TEMPLATE("grains find walls where the run begins, whatever these do later", S, Space<2>,
+                     Space<3>) {
+    constexpr int Dim = S::Dim;
+    const auto piece = [](double x, double z) {
+      if constexpr (Dim == 2) {
+        return Wall<2>::segment("piece", {x, z}, {x + 0.3, z + 0.1});
+      } else {
+        return Wall<3>::plate(
+            "piece", {{x, 0.2, z}, {x + 0.3, 0.2, z + 0.1}, {x + 0.3, 0.8, z + 0.1}, {x, 0.8, z}});
+      }
+    };
+    Wall<Dim> paddle = piece(0.1, 0.4), flap = paddle, gate = piece(0.6, 0.6);
+    SpinVec<Dim> axis = SpinVec<Dim>::Zero();
+    axis[kSpinDim<Dim> == 1 ? 0 : 1] = 1;
+    paddle.turning = Turn<Dim>{axis, 0.1, Vec<Dim>::Constant(0.3)};
+    flap.turning = Swing<Dim>{axis, 0.5, 0.05, Vec<Dim>::Constant(0.3)};
+    gate.until = 1e-3;
+    Wall<Dim> lift = piece(0.6, 0.1);
+    lift.motion = Path<Dim>{{1, 2}, {0.2 * Vec<Dim>::UnitX(), Vec<Dim>::Zero()}};
+    lift.point = lift.home = -0.2 * Vec<Dim>::UnitX() + lift.home;
+    Wall<Dim> shaker = piece(0.6, 0.3);
+    shaker.motion = Steady<Dim>{Vec<Dim>::UnitX()};
+
+    for (Wall<Dim> wall : {paddle, flap, gate, lift, shaker}) {
+      CAPTURE(wall.until);
+      auto scene = crowd<Dim>({{Dim == 2 ? 520 : 850, Dim == 2 ? 0.02 : 0.05}});
+      scene.walls = {wall};
+      const auto placed = place_grains(scene);
+      wall.advance(0, 0);
+      double nearest = 1;
+      for (const auto& grain : placed.grains) {
+        nearest = std::min(nearest, wall.foot(grain.position).distance - grain.radius);
+      }
+      CHECK(nearest >= 0);
+    }
+  }
+
   TEST_CASE_TEMPLATE("a round container is filled at random up to its wall", S, Space<2>,
                      Space<3>) {
     constexpr int Dim = S::Dim;
