@@ -7,11 +7,13 @@
 #include <array>
 #include <cstddef>
 #include <stdexcept>
+#include <system_error>
 
 namespace lagrain::detail {
 
 std::vector<WallPiece<3>> read_stl(const std::filesystem::path& file, double scale) {
-  if (!std::filesystem::is_regular_file(file)) throw std::invalid_argument("no such file");
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) throw std::invalid_argument("no such file");
   std::vector<CGAL::Simple_cartesian<double>::Point_3> points;
   std::vector<std::array<std::size_t, 3>> facets;
   if (!CGAL::IO::read_STL(file.string(), points, facets)) {
