@@ -741,12 +741,16 @@ class Reader {
       const auto opening = openings.find(sides[k]);
       Box face(low, high);
       (k % 2 == 0 ? face.max() : face.min())[across] = (k % 2 == 0 ? low : high)[across];
-      add_wall(s,
-               opening == openings.end()
-                   ? Wall<Dim>::half_space(name, k % 2 == 0 ? low : high, inwards)
-                   : Wall<Dim>::sheet(name, Vec<Dim>::Zero(),
-                                      pieces_around(face, opening->second, across)),
-               material);
+      Wall<Dim> wall = Wall<Dim>::half_space(name, k % 2 == 0 ? low : high, inwards);
+      if (opening != openings.end()) {
+        auto pieces = pieces_around(face, opening->second, across);
+        if (pieces.empty()) {
+          s.fail(keys::kOpenings, "nothing is left of side \"" + sides[k] +
+                                      "\"; leave it out: open = [\"" + sides[k] + "\"]");
+        }
+        wall = Wall<Dim>::sheet(name, Vec<Dim>::Zero(), std::move(pieces));
+      }
+      add_wall(s, std::move(wall), material);
       if (std::holds_alternative<Piston<Dim>>(scene_.walls.back().motion)) {
         s.fail(keys::kMotion,
                "each side would move for itself; leave the side open and give the piston as a "
@@ -790,20 +794,21 @@ class Reader {
     return openings;
   }
 
-  /// What is left of a side of a box, flat across one direction, around an opening.
+  /// What is left of a side of a box, flat across one direction, around an opening. A strip that
+  /// is as thin as a joint is left out.
   static std::vector<WallPiece<Dim>> pieces_around(const Box& face, const Box& opening,
                                                    Eigen::Index across) {
     std::vector<WallPiece<Dim>> pieces;
     const auto add = [&](const Box& part) {
       if constexpr (Dim == 2) {
-        if (part.min() != part.max()) pieces.push_back(WallSegment(part.min(), part.max()));
+        if (part.diagonal().norm() <= kSeam * face.diagonal().norm()) return;
+        pieces.push_back(WallSegment(part.min(), part.max()));
       } else {
         const Eigen::Index u = (across + 1) % 3, v = (across + 2) % 3;
-        if (!(part.min()[u] < part.max()[u] && part.min()[v] < part.max()[v])) return;
         std::vector<Vec<3>> corners(4, part.min());
         corners[1][u] = corners[2][u] = part.max()[u];
         corners[2][v] = corners[3][v] = part.max()[v];
-        pieces.push_back(Plate(corners));
+        if (Plate::defect(corners).empty()) pieces.push_back(Plate(corners));
       }
     };
     // Direction by direction, a part before the opening, one behind it, and the rest beside it.

@@ -206,6 +206,27 @@ TEST_SUITE("walls in scenes") {
     CHECK(flat.walls[1].foot({3.5, 0.5}).distance == 0.5);
   }
 
+  TEST_CASE("an opening that ends at the rim but for rounding leaves no strip there") {
+    const auto pieces = [](const std::string& low, const std::string& high) {
+      return parse_scene<3>(kSpace + "[[box]]\nlow = [0, 0, 0]\nhigh = [0.3, 1, 10]\n" +
+                                "openings = [{ side = \"bottom\", low = " + low +
+                                ", high = " + high + " }]\n",
+                            "s.toml")
+          .walls[4]
+          .piece_count();
+    };
+    CHECK(pieces("[0, 0.2]", "[0.1, 0.5]") == 3);
+    CHECK(pieces("[5e-17, 0.2]", "[0.1, 0.5]") == 3);
+    CHECK(pieces("[0, 0.2]", "[0.29999999999999993, 1]") == 1);
+    CHECK(pieces("[1e-9, 1e-9]", "[0.1, 0.999999999]") == 1);
+    const Scene<2> flat = parse_scene<2>(
+        plane() +
+            "[[box]]\nlow = [0, 0]\nhigh = [4, 10]\nopenings = [{ side = \"bottom\", low = "
+            "[1e-15], high = [2] }]\n",
+        "s.toml");
+    CHECK(flat.walls[2].piece_count() == 1);
+  }
+
   TEST_CASE("what makes no wall is refused in one sentence") {
     const auto in_plane = [](const std::string& keys) { return error_of<2>("[[wall]]\n" + keys); };
     const auto in_space = [](const std::string& keys) { return error_of<3>("[[wall]]\n" + keys); };
@@ -258,6 +279,9 @@ TEST_SUITE("walls in scenes") {
     CHECK(has(error_of<2>(box + "open = [\"bottom\"]\n"
                                 "openings = [{ side = \"bottom\", low = [1], high = [2] }]\n"),
               "is left out as a whole"));
+    CHECK(has(opening("side = \"bottom\", low = [0], high = [4]"),
+              "box[0].openings: nothing is left of side \"bottom\"; leave it out: open = "
+              "[\"bottom\"]"));
   }
 
   TEST_CASE("the series tells the work and the torque of a wall that turns") {
