@@ -558,7 +558,7 @@ class Reader {
   Wall<Dim> read_half_space(TomlTable& s, const std::string& name) {
     const Vec<Dim> point = s.vector<Dim>(keys::kPoint);
     const Vec<Dim> normal = s.vector<Dim>(keys::kNormal);
-    if (normal.isZero(0)) s.expected(keys::kNormal, "a direction");
+    if (!is_direction(normal)) s.expected(keys::kNormal, "a direction");
     for (const Key& key : {keys::kFrom, keys::kTo, keys::kAlong}) {
       s.refuse(key, "either point and normal, or from and to");
     }
@@ -583,7 +583,7 @@ class Reader {
       const Vec<2> from = s.vector<2>(keys::kFrom);
       const Vec<2> along =
           given_along ? s.vector<2>(keys::kAlong) : Vec<2>(s.vector<2>(keys::kTo) - from);
-      if (along.isZero(0)) {
+      if (!(along.squaredNorm() > 0)) {
         s.fail(given_along ? keys::kAlong : keys::kTo, "expected another point than from");
       }
       return Wall<2>::sheet(name, from, {WallSegment(Vec<2>::Zero(), along)});
@@ -625,7 +625,7 @@ class Reader {
         if (closed) line.push_back(line.front());
         if (line.size() < 2) s.fail(key, "a line needs at least two points");
         for (std::size_t k = 0; k + 1 < line.size(); ++k) {
-          if (line[k] == line[k + 1]) {
+          if (!((line[k + 1] - line[k]).squaredNorm() > 0)) {
             s.fail(key, "point " + std::to_string(k + 1) + " and the next are one");
           }
           pieces.push_back(WallSegment(line[k], line[k + 1]));
@@ -682,7 +682,7 @@ class Reader {
       refuse_others(s, {keys::kPoint, keys::kAxis, keys::kHeight, keys::kRadius, keys::kRadii},
                     "a cone has point, axis, height and radii");
       Frustum frustum{Vec<3>::Zero(), s.vector<3>(keys::kAxis)};
-      if (frustum.axis.isZero(0)) s.expected(keys::kAxis, "a direction");
+      if (!is_direction(frustum.axis)) s.expected(keys::kAxis, "a direction");
       if (!is_unit(frustum.axis)) frustum.axis.normalize();
       frustum.height = s.number(keys::kHeight, 0);
       if (s.has(keys::kRadii)) {
@@ -710,7 +710,7 @@ class Reader {
       s.refuse(keys::kAxis, "a circle has none; remove this line");
     } else {
       axis = s.vector<Dim>(keys::kAxis);
-      if (axis.isZero(0)) s.expected(keys::kAxis, "a direction");
+      if (!is_direction(axis)) s.expected(keys::kAxis, "a direction");
     }
     refuse_others(s, {keys::kPoint, keys::kAxis, keys::kRadius}, why);
     Wall<Dim> wall = Wall<Dim>::cylinder(name, point, axis, radius);
@@ -861,6 +861,9 @@ class Reader {
     scene_.walls.push_back(std::move(wall));
   }
 
+  /// Whether there is a unit vector along it: not where its square is 0 or more than doubles hold.
+  static bool is_direction(const Vec<Dim>& v) { return std::isnormal(v.squaredNorm()); }
+
   /// Normalising a unit vector again may change its last bit; a resolved scene must not.
   static bool is_unit(const Vec<Dim>& v) { return std::abs(v.squaredNorm() - 1) < 1e-14; }
 
@@ -891,7 +894,7 @@ class Reader {
         Piston<Dim> m{};
         m.mass = s.number(keys::kPistonMass);
         m.load = s.vector<Dim>(keys::kLoad);
-        if (m.load.isZero(0)) s.expected(keys::kLoad, "a force: the piston moves along it");
+        if (!is_direction(m.load)) s.expected(keys::kLoad, "a force: the piston moves along it");
         m.start = s.number(keys::kStart, m.start);
         s.refuse(keys::kStop, "a piston has none: grains stop it; remove this line");
         wall.motion = m;
@@ -908,7 +911,7 @@ class Reader {
       s.refuse(keys::kAxis, "in the plane all turns about the same; remove this line");
     } else {
       axis = s.vector<3>(keys::kAxis);
-      if (axis.isZero(0)) s.expected(keys::kAxis, "a direction");
+      if (!is_direction(axis)) s.expected(keys::kAxis, "a direction");
       if (!is_unit(axis)) axis.normalize();
     }
     const Vec<Dim> about = s.has(keys::kAbout) ? s.vector<Dim>(keys::kAbout) : wall.home;

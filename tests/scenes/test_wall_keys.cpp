@@ -268,6 +268,21 @@ TEST_SUITE("walls in scenes") {
                        "turning = { type = \"steady\", rate = 1 }\n"),
               "a piston does not turn"));
     CHECK(has(in_plane("from = [0, 0]\nto = [1, 0]\nuntil = 0\n"), "wall[0].until"));
+    // What doubles cannot tell from nothing, or square.
+    CHECK(has(in_plane("from = [0, 0]\nalong = [1e-200, 0]\n"), "expected another point"));
+    CHECK(has(in_plane("points = [[0, 0], [1e-200, 0]]\n"), "point 1 and the next are one"));
+    for (const std::string tiny_or_huge : {"[0, 1e-200, 0]", "[1e200, 0, 0]"}) {
+      CHECK(has(in_space("point = [0, 0, 0]\nnormal = " + tiny_or_huge + "\n"),
+                "wall[0].normal: expected a direction"));
+      CHECK(has(in_space("point = [0, 0, 0]\nradius = 1\naxis = " + tiny_or_huge + "\n"),
+                "wall[0].axis: expected a direction"));
+      CHECK(has(in_space("point = [0, 0, 0]\nradii = [0, 1]\naxis = " + tiny_or_huge + "\n"),
+                "wall[0].axis: expected a direction"));
+      CHECK(has(in_space("point = [0, 0, 0]\nnormal = [0, 0, 1]\nmotion = { type = \"piston\", "
+                         "mass = 1, load = " +
+                         tiny_or_huge + " }\n"),
+                "motion.load: expected a force"));
+    }
 
     const std::string box = "[[box]]\nlow = [0, 0]\nhigh = [4, 10]\n";
     const auto opening = [&](const std::string& keys) {
