@@ -416,6 +416,28 @@ TEST_SUITE("surfaces") {
     }
   }
 
+  TEST_CASE("a point written twice, with another last digit, makes no second contact") {
+    // A piece as short as rounding has any direction, and its neighbours are known no better.
+    const Vec<2> along(0.6, 0.8), away(-0.8, 0.6);
+    for (const Vec<2>& slip : {Vec<2>(1.2e-16, 0), {-1.2e-16, 1.2e-16}, {1e-15, 1e-15}}) {
+      const Vec<2> joint = 0.3 * along;
+      std::vector<Vec<2>> points{-2 * along, joint, joint + slip, 1 * along, 3 * along};
+      REQUIRE(points[1] != points[2]);
+      std::vector<WallPiece<2>> pieces;
+      for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+        pieces.push_back(WallSegment(points[k], points[k + 1]));
+      }
+      std::vector<Wall<2>> walls{Wall<2>::sheet("line", Vec<2>::Zero(), pieces)};
+      join_walls(walls);
+      for (double x = -0.5; x < 1.5; x += 1.0 / 64) {
+        CAPTURE(x);
+        CHECK(contacts_at<2>(walls, x * along + 0.9 * away, 1).size() == 1);
+        CHECK(contacts_at<2>(walls, x * along - 0.9 * away, 1).size() == 1);
+      }
+      CHECK(contacts_at<2>(walls, joint + 0.9 * away, 1).size() == 1);
+    }
+  }
+
   TEST_CASE("exactly on an oblique flat joint, one of the two carries: segments") {
     Random random(7);
     int not_once = 0;
