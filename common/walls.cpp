@@ -72,7 +72,7 @@ void join_walls(std::vector<Wall<Dim>>& walls) {
   for (std::size_t a = 0; a < n; ++a) {
     for (std::size_t b = a + 1; b < n; ++b) {
       const bool may_come_to_meet =
-          walls[a].pieces() && walls[b].pieces() && (walls[a].moves() || walls[b].moves());
+          (walls[a].pieces() || walls[b].pieces()) && (walls[a].moves() || walls[b].moves());
       if (!may_come_to_meet && !may_meet(walls[a], walls[b])) continue;
       partners[a].push_back(b);
       partners[b].push_back(a);

@@ -392,8 +392,8 @@ struct WallPair {
   auto operator<=>(const WallPair&) const = default;
 };
 
-/// Finds which walls may meet others, with which they are one surface then: the boxes of two touch,
-/// or one of two that have an end moves. A wall of several pieces meets itself.
+/// Finds which walls may meet others, with which they are one surface then: at least one of two has
+/// an end, and their boxes touch, or one of the two moves. A wall of several pieces meets itself.
 /// Walls that hang together get one seam. Also sees which walls are uneven.
 template <int Dim>
 void join_walls(std::vector<Wall<Dim>>& walls);

@@ -921,6 +921,26 @@ TEST_SUITE("surfaces") {
     CHECK(count(0.5, 0.3, 0.49) == 1);
   }
 
+  TEST_CASE_TEMPLATE("a piece that comes to lie on a half-space is one surface with it", S,
+                     Space<2>, Space<3>) {
+    constexpr int Dim = S::Dim;
+    for (const std::size_t mover : {0, 1}) {
+      CAPTURE(mover);
+      std::vector<Wall<Dim>> walls{Wall<Dim>::half_space("floor", Vec<Dim>::Zero(), up<Dim>()),
+                                   flat_piece<Dim>("lid", at<Dim>(-2, 1), at<Dim>(2, 1))};
+      walls[mover].motion = Steady<Dim>{mover == 0 ? up<Dim>() : Vec<Dim>(-up<Dim>()), 0, 1};
+      join_walls(walls);
+      const auto count = [&](double t, double height) {
+        for (auto& wall : walls) wall.advance(t, 0);
+        return contacts_at<Dim>(walls, at<Dim>(0.3, walls[0].point[Dim - 1] + height), 0.5).size();
+      };
+
+      CHECK(count(0, 0.45) == 1);
+      CHECK(count(0.1, 0.45) == 2);  // between the two
+      CHECK(count(1, 0.45) == 1);
+    }
+  }
+
   TEST_CASE_TEMPLATE("a grain over a gap rests on its two corners", S, Space<2>, Space<3>) {
     constexpr int Dim = S::Dim;
     auto walls = polyline<Dim>({{-3, 0}, {0, 0}, {3, 0}});
