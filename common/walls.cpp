@@ -136,31 +136,35 @@ bool is_contact(const std::vector<Candidate<Dim>>& list, std::size_t own, const 
     if (one.feature == Feature::face) return (one.foot - other.foot).norm() <= 2 * seam;
     return std::abs(walls[other.wall].foot(other.piece, one.foot).distance) <= seam;
   };
-  const auto reached_from = [&](std::size_t start) {
-    std::vector<bool> reached(n);
-    std::vector<std::size_t> way{start};
-    reached[start] = true;
-    while (!way.empty()) {
-      const std::size_t at = way.back();
-      way.pop_back();
-      for (std::size_t k = 0; k < n; ++k) {
-        if (reached[k] || !leads_to(list[at], list[k])) continue;
-        reached[k] = true;
-        way.push_back(k);
-      }
-    }
-    return reached;
-  };
-  const std::vector<bool> minimum = reached_from(own);
   const auto rank = [&](std::size_t k) {
     return std::tuple(-static_cast<int>(list[k].feature), list[k].distance, list[k].wall,
                       list[k].piece);
   };
-  for (std::size_t k = 0; k < n; ++k) {
-    if (k == own || !minimum[k]) continue;
-    if (rank(k) < rank(own) || !reached_from(k)[own]) return false;
+  // Many small pieces under one grain: nearly all find at once who carries in their place.
+  std::vector<bool> minimum(n), leads_back(n);
+  std::vector<std::size_t> way{own};
+  minimum[own] = leads_back[own] = true;
+  while (!way.empty()) {
+    const std::size_t at = way.back();
+    way.pop_back();
+    for (std::size_t k = 0; k < n; ++k) {
+      if (minimum[k] || !leads_to(list[at], list[k])) continue;
+      if (rank(k) < rank(own)) return false;
+      minimum[k] = true;
+      way.push_back(k);
+    }
   }
-  return true;
+  way.push_back(own);
+  while (!way.empty()) {
+    const std::size_t at = way.back();
+    way.pop_back();
+    for (std::size_t k = 0; k < n; ++k) {
+      if (leads_back[k] || !minimum[k] || !leads_to(list[k], list[at])) continue;
+      leads_back[k] = true;
+      way.push_back(k);
+    }
+  }
+  return minimum == leads_back;
 }
 
 }  // namespace
