@@ -347,6 +347,7 @@ struct Sweep {
     std::array<const Wall<Dim>*, kWidth> wall;
     Real distance, mass;
     Vec<Dim, Real> normal, wall_velocity;
+    SpinVec<Dim, Real> wall_spin = SpinVec<Dim, Real>::Zero();
     for (std::size_t k = 0; k < kWidth; ++k) {
       const auto [slot, w, piece] = table.pairs()[first + k];
       const int at = static_cast<int>(k);
@@ -365,9 +366,12 @@ struct Sweep {
         set_lane(normal[d], at, foot.normal[d]);
         set_lane(wall_velocity[d], at, surface_velocity[d]);
       }
+      if (!wall[k]->uneven) continue;
+      for (int d = 0; d < kSpinDim<Dim>; ++d) set_lane(wall_spin[d], at, wall[k]->spin[d]);
     }
     const auto body = read_bodies<Real>(scene.grains, i);
-    const auto [touching, touch] = touch_of_wall(body, mass, distance, normal, wall_velocity);
+    const auto [touching, touch] =
+        touch_of_wall(body, mass, distance, normal, wall_velocity, wall_spin);
     if (!any(touching)) return write_memory(table, InRow{first}, Memory{});
 
     Memory memory = read_memory(table, InRow{first});
@@ -387,8 +391,9 @@ struct Sweep {
     for (std::size_t k = 0; k < kWidth; ++k) {
       push.add_to(scene.load(i[k]), k);
       const auto at = static_cast<int>(k);
-      const auto in_lane = [&](const auto& of_all) {
-        return Vec<Dim>::NullaryExpr([&](Eigen::Index d) { return lane(of_all[d], at); });
+      const auto in_lane = [&]<int N>(const Eigen::Matrix<Real, N, 1>& of_all) {
+        return Eigen::Matrix<double, N, 1>::NullaryExpr(
+            [&, at](Eigen::Index d) { return lane(of_all[d], at); });
       };
       WallLoad<Dim>& load = wall_loads[table.pairs()[first + k].wall];
       load.force -= in_lane(response.force);
@@ -396,6 +401,7 @@ struct Sweep {
       const Vec<Dim> force = in_lane(response.force), n = in_lane(normal);
       const Vec<Dim> foot = scene.grains[i[k]].position() - lane(distance, at) * n;
       if (wall[k]->turns()) load.torque -= torque<double>(Vec<Dim>(foot - wall[k]->pivot), force);
+      if constexpr (needs.rolling) load.torque -= in_lane(response.moment);
       if (wall[k]->runs()) load.power -= force.dot(wall[k]->belt_along(n));
     }
   }

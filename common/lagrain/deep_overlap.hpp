@@ -83,7 +83,7 @@ void note_deepest(DeepOverlap& deepest, const PairTable<P, Memory>& table,
           contact_foot<Dim>(scene.walls, table.pairs(), k, i.position, i.radius);
       const Vec<Dim> velocity = wall.velocity_at(i.position - distance * normal, normal);
       note(pair.i, pair.wall, true, scene.law_with_wall(pair.i, wall),
-           touch_of_wall(i, 1 / i.inverse_mass, distance, normal, velocity), i.radius);
+           touch_of_wall(i, 1 / i.inverse_mass, distance, normal, velocity, wall.spin), i.radius);
     } else {
       const auto j = body(pair.j);
       note(pair.i, pair.j, false, scene.law(pair.i, pair.j), touch_of(i, j),

@@ -143,7 +143,7 @@ class GrainSystem {
             contact_foot<Dim>(walls_.data(), block.walls.pairs(), k, x, g.radius[pair.i]);
         const Vec<Dim> velocity = wall.velocity_at(x - distance * normal, normal);
         const auto [touching, touch] =
-            touch_of_wall(body(g, pair.i), g.mass[pair.i], distance, normal, velocity);
+            touch_of_wall(body(g, pair.i), g.mass[pair.i], distance, normal, velocity, wall.spin);
         if (!touching) continue;
         Memory memory = block.walls.memory(k);
         f(pair, touch, laws_.with_wall(g.material, pair.i, wall.material).respond(touch, memory, 0),

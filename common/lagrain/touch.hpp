@@ -24,7 +24,7 @@ struct Touch {
   /// Tangential velocity of i against j at the contact [m/s].
   Vec<Dim, Real> slip = Vec<Dim, Real>::Zero();
   /// Mean angular velocity of the two about the normal [rad/s]: how fast the contact turns in its
-  /// own plane. Known to laws that remember; a wall does not turn.
+  /// own plane. Known to laws that remember.
   SpinVec<Dim, Real> twist = SpinVec<Dim, Real>::Zero();
   /// Angular velocity of i against j [rad/s]. The part in the contact plane rolls, the part about
   /// the normal twists. Known to laws that resist rolling.
@@ -101,12 +101,13 @@ MaybeTouch<Dim, Real> touch_of(const Body<Dim, needs, Real>& i, const Body<Dim, 
 }
 
 /// Whether a grain of a mass [kg] touches a wall, and how. The wall's surface is `distance` [m]
-/// from the grain's centre, has its unit normal towards the grain, and moves with
-/// `wall_velocity` [m/s].
+/// from the grain's centre, has its unit normal towards the grain, moves with `wall_velocity` [m/s]
+/// there, and turns with `wall_spin` [rad/s].
 template <Needs needs, int Dim, class Real>
 MaybeTouch<Dim, Real> touch_of_wall(const Body<Dim, needs, Real>& i, const Real& mass,
                                     const Real& distance, const Vec<Dim, Real>& normal,
-                                    const Vec<Dim, Real>& wall_velocity) {
+                                    const Vec<Dim, Real>& wall_velocity,
+                                    const SpinVec<Dim, Real>& wall_spin) {
   MaybeTouch<Dim, Real> result;
   Touch<Dim, Real>& touch = result.touch;
   touch.overlap = i.radius - distance;
@@ -119,9 +120,9 @@ MaybeTouch<Dim, Real> touch_of_wall(const Body<Dim, needs, Real>& i, const Real&
     touch.slip = velocity + touch.closing * normal;
   }
   if constexpr (needs.memory) {
-    touch.twist = about<Real>(normal, SpinVec<Dim, Real>(Real(0.5) * i.omega));
+    touch.twist = about<Real>(normal, SpinVec<Dim, Real>(Real(0.5) * (i.omega + wall_spin)));
   }
-  if constexpr (needs.rolling) touch.relative_spin = i.omega;
+  if constexpr (needs.rolling) touch.relative_spin = i.omega - wall_spin;
   touch.effective_mass = mass;
   touch.effective_radius = i.radius;
   return result;

@@ -253,6 +253,31 @@ TEST_SUITE("moving walls") {
     CHECK((velocities[0] - velocities[1]).norm() < 1e-9);
   }
 
+  // Riding on a turntable, a grain is at rest against it: nothing rolls, twists or slides.
+  TEST_CASE_TEMPLATE("a grain in the middle of a turntable comes to turn with it, and no more", C,
+                     Case<3, RollingSpring>, Case<3, FrictionalSpring>) {
+    Wall<3> table = Wall<3>::half_space("table", Vec<3>::Zero(), Vec<3>::UnitZ());
+    table.turning = Turn<3>{Vec<3>::UnitZ(), 2, Vec<3>::Zero()};
+    Grain<3> grain = grain_at<3>(Vec<3>::UnitZ());
+    const bool twists = C::Law::needs.rolling;
+    grain.omega = Vec<3>(0, 0, twists ? 0 : 2);
+    auto sim = make_sim<3, typename C::Law>({grain},
+                                            make_law<typename C::Law>({.stiffness = 1e6,
+                                                                       .restitution = 0.3,
+                                                                       .friction = 0.4,
+                                                                       .rolling_friction = 0.1,
+                                                                       .twisting_friction = 0.1}),
+                                            {table}, 2, Vec<3>(0, 0, -10));
+    const Ledger start = energy_ledger(sim);
+    run_until(sim, 3);
+    CHECK((sim.grains().omega.col(0) - Vec<3>(0, 0, 2)).norm() < 1e-3);
+    CHECK(sim.grains().velocity.col(0).norm() < 1e-6);
+    // Twisting: torque times angle of the table, half of which is lost while the grain catches up.
+    const double kinetic = 0.5 * kInertiaFactor<3> * 4;
+    if (twists) CHECK(relative_error(sim.walls()[0].work, 2 * kinetic) < 0.02);
+    CHECK(std::abs(residual(energy_ledger(sim), start)) < 1e-3 * kinetic);
+  }
+
   TEST_CASE_TEMPLATE("a wall goes at its time, with what the contacts with it held", C,
                      Case<2, LinearSpring>, Case<3, FrictionalHertz>) {
     constexpr int Dim = C::Dim;

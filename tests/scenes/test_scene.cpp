@@ -134,7 +134,7 @@ TEST_SUITE("scene") {
     CHECK(message_of(with(kHeap, "density = 2000", "")) ==
           "s.toml:19: fill[0].material: grains of \"gravel\" need [materials.gravel] density");
     CHECK(message_of(kHeap.substr(0, kHeap.find("[[fill]]"))) ==
-          "s.toml: no grains: expected at least one [[fill]], [[grain]] or [[grains]]");
+          "s.toml: no grains: expected at least one [[fill]], [[grain]], [[grains]] or [[inlet]]");
   }
 
   TEST_CASE("a key that the model does not use is an error") {
