@@ -32,8 +32,8 @@ struct Syrup {
   static void finish(V&, V&, const V&, const V&, double) {}
 };
 
-/// Moves the grains that are not pinned until none overlaps another or a wall; walls stay as they are.
-/// Springs that are a little longer than the grains do it, so that the last contact opens after
+/// Moves the grains that are not pinned until none overlaps another or a wall; walls stay as they
+/// are. Springs that are a little longer than the grains do it, so that the last contact opens after
 /// finitely many steps.
 ///
 /// @param grains velocities are left alone, masses too

@@ -95,9 +95,9 @@ TEST_SUITE("grain files") {
   TEST_CASE("columns stand in any order, with or without units; what is not known is passed over") {
     const Bed bed(
         kScene,
-        "\xEF\xBB\xBFnumber[-],radius[m],\"y[m]\" , x,force[N],material[-],vy[m/s],vx[m/s],omega[rad/s]\r\n"
-        "7,0.25,+1.5, -2 ,9,rock,-0.125,1e-3,3\r\n\r\n"
-        "8,0.125,2,3,nan,\"glass, green\",0,0,-0\n");
+        "\xEF\xBB\xBFradius[m],\"y[m]\" , x,f[N],material[-],vy[m/s],vx[m/s],omega[rad/s]\r\n"
+        "0.25,+1.5, -2 ,9,rock,-0.125,1e-3,3\r\n\r\n"
+        "0.125,2,3,nan,\"glass, green\",0,0,-0\n");
 
     const auto placed = bed.place<2>();
 

@@ -221,8 +221,8 @@ TEST_SUITE("walls in scenes") {
     CHECK(pieces("[1e-9, 1e-9]", "[0.1, 0.999999999]") == 1);
     const Scene<2> flat = parse_scene<2>(
         plane() +
-            "[[box]]\nlow = [0, 0]\nhigh = [4, 10]\nopenings = [{ side = \"bottom\", low = "
-            "[1e-15], high = [2] }]\n",
+            "[[box]]\nlow = [0, 0]\nhigh = [4, 10]\n"
+            "openings = [{ side = \"bottom\", low = [1e-15], high = [2] }]\n",
         "s.toml");
     CHECK(flat.walls[2].piece_count() == 1);
   }
