@@ -33,8 +33,8 @@ struct Syrup {
 };
 
 /// Moves the grains that are not pinned until none overlaps another or a wall; walls stay as they
-/// are. Springs that are a little longer than the grains do it, so that the last contact opens after
-/// finitely many steps.
+/// are. Springs that are a little longer than the grains do it, so that the last contact opens
+/// after finitely many steps.
 ///
 /// @param grains velocities are left alone, masses too
 /// @param most   steps after which it gives up

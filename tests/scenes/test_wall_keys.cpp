@@ -219,11 +219,11 @@ TEST_SUITE("walls in scenes") {
     CHECK(pieces("[5e-17, 0.2]", "[0.1, 0.5]") == 3);
     CHECK(pieces("[0, 0.2]", "[0.29999999999999993, 1]") == 1);
     CHECK(pieces("[1e-9, 1e-9]", "[0.1, 0.999999999]") == 1);
-    const Scene<2> flat = parse_scene<2>(
-        plane() +
-            "[[box]]\nlow = [0, 0]\nhigh = [4, 10]\n"
-            "openings = [{ side = \"bottom\", low = [1e-15], high = [2] }]\n",
-        "s.toml");
+    const Scene<2> flat =
+        parse_scene<2>(plane() +
+                           "[[box]]\nlow = [0, 0]\nhigh = [4, 10]\n"
+                           "openings = [{ side = \"bottom\", low = [1e-15], high = [2] }]\n",
+                       "s.toml");
     CHECK(flat.walls[2].piece_count() == 1);
   }
 
