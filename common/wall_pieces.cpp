@@ -208,6 +208,7 @@ struct OnMeridian {
 
 std::string Frustum::defect() const {
   if (!(std::abs(axis.squaredNorm() - 1) < 1e-9)) return "the axis has no direction";
+  if (!std::isfinite(size() * size())) return "it is too large for its size to be squared";
   if (!(height >= 0 && low_radius >= 0 && high_radius >= 0)) {
     return "height and radii are not negative";
   }

@@ -152,6 +152,7 @@ TEST_SUITE("pieces of walls") {
     CHECK(defect(0, 1, 1) == "a ring needs two radii that differ");
     CHECK(defect(-1, 1, 1) == "height and radii are not negative");
     CHECK(!defect(1, 0, 0).empty());
+    CHECK(defect(0, 0, 1e200) == "it is too large for its size to be squared");
     CHECK(Frustum{Vec<3>::Zero(), Vec<3>::Zero(), 1, 1, 1}.defect() == "the axis has no direction");
     CHECK_THROWS_AS(Sheet<2>({}), ContractError);
   }

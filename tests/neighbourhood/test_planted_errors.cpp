@@ -729,12 +729,15 @@ TEST_SUITE("planted_errors") {
     check_found(near, "and wall low are within reach",
                 [](auto& list) { Probe::wall_margin(list)[0] += 1; });
     check_found(near, "and wall low are within reach",
-                [](auto& list) { Probe::wall_centre(list)[0] += 2 * Vec<Dim>::Unit(0); });
+                [](auto& list) { Probe::listed_walls(list)[0].point += 2 * Vec<Dim>::Unit(0); });
     check_found(near, "block " + std::to_string(b) + " is not sound", [&](auto& list) {
       list.blocks()[b].walls.insert({first.i, static_cast<int>(near.walls.size())});
     });
+    check_found(near, "block " + std::to_string(b) + " is not sound", [&](auto& list) {
+      list.blocks()[b].walls.insert({first.i, first.wall, 1});  // a half-space has one piece
+    });
     check_found(near, "the parts of the list do not fit together",
-                [](auto& list) { Probe::wall_centre(list).pop_back(); });
+                [](auto& list) { Probe::listed_walls(list).pop_back(); });
     check_found(near, "block " + std::to_string(b) + " is not sound",
                 [&](auto& list) { Probe::memory(list.blocks()[b].walls)[0].push_back(0); });
   }

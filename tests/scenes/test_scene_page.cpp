@@ -67,7 +67,7 @@ std::string path_of(std::string header) {
 
 Page read_page() {
   Page page;
-  std::string path;
+  std::string path = "none";
   bool in_scene = false;
   for (const std::string& line : lines_of(content(kFolder / "README.md"))) {
     if (line.starts_with("```")) {
@@ -111,10 +111,17 @@ std::set<std::string> all_keys() {
   return keys;
 }
 
-/// A file of one facet, in the folder where the test runs: scenes given as text begin there.
-void write_mesh(const std::string& file) {
-  std::ofstream(file) << "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
-                         "vertex 0 1 0\nendloop\nendfacet\nendsolid s\n";
+/// The page's example of a mesh as a file that is there: one facet.
+std::string with_mesh(std::string text) {
+  static const Folder folder;
+  const std::string name = "rotor.stl", file = folder.path / name;
+  if (!std::filesystem::exists(file)) {
+    std::filesystem::create_directory(folder.path);
+    std::ofstream(file) << "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                           "vertex 0 1 0\nendloop\nendfacet\nendsolid s\n";
+  }
+  const auto at = text.find('"' + name);
+  return at == std::string::npos ? text : text.replace(at + 1, name.size(), file);
 }
 
 /// Scenes in which every table occurs, and every shape and law that changes which keys are known.
@@ -175,7 +182,6 @@ high = [1, 1]
   const auto in_space_with = [&](const std::string& shape) {
     return with(in_space<3>(plain), "point = [0, 0, 0]\nnormal = [0, 0, 1]\n", shape);
   };
-  write_mesh("rotor.stl");
   const std::string round = with(plain, plane, "point = [0, 0]\nradius = 1\n");
   return {
       plain,
@@ -252,10 +258,11 @@ std::optional<std::string> with_key(const std::string& scene, const std::string&
 /// The scene with every default filled in.
 /// @throws SceneError
 std::string resolved(const std::string& scene) {
-  if (scene.find("dimension = 3") != std::string::npos) {
-    return to_toml(parse_scene<3>(scene, "page"));
+  const std::string text = with_mesh(scene);
+  if (text.find("dimension = 3") != std::string::npos) {
+    return to_toml(parse_scene<3>(text, "page"));
   }
-  return to_toml(parse_scene<2>(scene, "page"));
+  return to_toml(parse_scene<2>(text, "page"));
 }
 
 /// What the reader says of a key that holds a date, in each scene where it knows the key.

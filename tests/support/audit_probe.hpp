@@ -60,7 +60,7 @@ struct AuditProbe {
   static auto& across_count(auto& list) { return list.across_; }
   static auto& margin(auto& list) { return list.margin_; }
   static auto& stays(auto& list) { return list.stay_; }
-  static auto& wall_centre(auto& list) { return list.wall_centre_; }
+  static auto& listed_walls(auto& list) { return list.listed_walls_; }
   static auto& wall_margin(auto& list) { return list.wall_margin_; }
   static auto& pairs_of_table(auto& table) { return table.pairs_; }
   static auto& memory(auto& table) { return table.memory_; }
