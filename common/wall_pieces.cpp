@@ -245,7 +245,9 @@ Feature Frustum::feature(const Vec<3>& foot, double seam) const {
   return std::min(rim(low_radius, 0), rim(high_radius, height));
 }
 
-double Frustum::size() const { return std::max({height, 2 * low_radius, 2 * high_radius}); }
+double Frustum::size() const {
+  return std::max({height, 2 * low_radius, 2 * high_radius});
+}
 
 Eigen::AlignedBox3d Frustum::box() const {
   const Vec<3> wide = (1 - axis.array().square()).max(0).sqrt();
@@ -355,15 +357,16 @@ int Sheet<Dim>::nearest_piece(const Vec<Dim>& x) const {
     for (std::size_t k = 0; k < pieces().size(); ++k) look_at(static_cast<int>(k));
     return nearest;
   }
-  // Boxes come in the order of their distance; a piece is no nearer than its box.
-  const TreePoint<Dim> point = tree_point<Dim>(x);
-  const auto& boxes = parts_->tree->boxes;
-  const auto all = static_cast<unsigned>(boxes.size());
-  for (auto entry = boxes.qbegin(geometry::index::nearest(point, all)); entry != boxes.qend();
-       ++entry) {
-    if (geometry::comparable_distance(point, entry->first) > least) break;
+  // No piece is nearer than its box, so that of the nearest box tells how far to look. To visit the
+  // boxes in the order of their distance takes the tree as long as to sort all of them.
+  for (auto entry = parts_->tree->boxes.qbegin(geometry::index::nearest(tree_point<Dim>(x), 1));
+       entry != parts_->tree->boxes.qend(); ++entry) {
     look_at(entry->second);
   }
+  constexpr double kHair = 1 + 1e-12;  // rounding cannot hide a piece
+  std::vector<int> found;
+  near(x, std::sqrt(least) * kHair, found);
+  for (const int k : found) look_at(k);
   return nearest;
 }
 
