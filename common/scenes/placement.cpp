@@ -216,19 +216,6 @@ class Placer {
     placed_.group.push_back(group);
   }
 
-<<<<<<< HEAD
-=======
-  bool clear_of_walls(const Vec<Dim>& x, double r) const {
-    bool clear = true;
-    std::vector<int> found;
-    for (const Wall<Dim>& wall : walls_) {
-      wall.for_each_near(x, r, found,
-                         [&](int piece) { clear = clear && wall.foot(piece, x).distance >= r; });
-    }
-    return clear;
-  }
-
->>>>>>> 1ea183f (Placing grains beside a large mesh takes no longer than without it)
   bool free(const Vec<Dim>& x, double r) const {
     if (!clear_of_walls(walls_, x, r)) return false;
     bool is_free = true;

@@ -132,8 +132,13 @@ std::vector<Grain<Dim>> smallest_newcomers(const Scene<Dim>& scene) {
 /// Whether a ball lies on the free side of all walls, and touches none.
 template <int Dim>
 bool clear_of_walls(const std::vector<Wall<Dim>>& walls, const Vec<Dim>& x, double r) {
-  return std::all_of(walls.begin(), walls.end(),
-                     [&](const Wall<Dim>& wall) { return wall.foot(x).distance >= r; });
+  bool clear = true;
+  std::vector<int> found;
+  for (const Wall<Dim>& wall : walls) {
+    wall.for_each_near(x, r, found,
+                       [&](int piece) { clear = clear && wall.foot(piece, x).distance >= r; });
+  }
+  return clear;
 }
 
 }  // namespace lagrain::detail
