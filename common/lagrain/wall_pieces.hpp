@@ -68,7 +68,8 @@ class WallSegment {
   Vec<2> from_, to_, along_;
 };
 
-/// An arc of a circle in the plane.
+/// An arc of a circle in the plane. A grain touches it at its nearest point alone: grains smaller
+/// than the arc.
 class Arc {
  public:
   /// @param from, through, to  three points of it in their order; the first and last are its ends
