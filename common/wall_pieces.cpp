@@ -245,9 +245,7 @@ Feature Frustum::feature(const Vec<3>& foot, double seam) const {
   return std::min(rim(low_radius, 0), rim(high_radius, height));
 }
 
-double Frustum::size() const {
-  return std::max({height, 2 * low_radius, 2 * high_radius});
-}
+double Frustum::size() const { return std::max({height, 2 * low_radius, 2 * high_radius}); }
 
 Eigen::AlignedBox3d Frustum::box() const {
   const Vec<3> wide = (1 - axis.array().square()).max(0).sqrt();
