@@ -153,6 +153,7 @@ class GrainSystem {
   }
 
  protected:
+  /// @cond  What Simulation builds on.
   using Record = GrainRecord<Dim, needs>;
   using Load = LoadRecord<Dim, needs>;
 
@@ -296,6 +297,7 @@ class GrainSystem {
   std::vector<std::vector<int>> strays_;  // grains of each block that have left their margins
   std::vector<int> all_strays_;
   PassageWatch<Dim> watch_;
+  /// @endcond
 
  private:
   /// Blocks of slots are the unit of work of a thread. They are so large that few pairs lie across

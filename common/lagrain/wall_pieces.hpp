@@ -40,28 +40,29 @@ Vec<Dim> any_normal(const Vec<Dim>& along) {
 }
 
 // Every piece is solid from both sides. Its places are relative to its wall's point, in the wall's
-// own frame, which turns with it. Each has the same functions:
-//   nearest(x)          its point that is nearest to x [m]
-//   normal_at(foot)     a unit normal at one of its points [-]
-//   feature(foot, seam) what one of its points lies on, to a seam [m]
-//   size()              its length from end to end, or width [m]
-//   corners()           the ends or corners of a straight piece [m]; the ends of a bent one
-//   box()               an axis-parallel box around it [m]
+// own frame, which turns with it. Each has the same six functions.
 
 /// A straight line in the plane.
 class WallSegment {
  public:
+  /// @param from, to  its ends [m]
   WallSegment(const Vec<2>& from, const Vec<2>& to) : from_(from), to_(to), along_(to - from) {}
 
   const Vec<2>& from() const { return from_; }    ///< its first end [m]
   const Vec<2>& to() const { return to_; }        ///< its second end [m]
   const Vec<2>& along() const { return along_; }  ///< from its first end to its second [m]
 
+  /// The point of it that is nearest to x [m].
   Vec<2> nearest(const Vec<2>& x) const;
+  /// A unit normal at one of its points [-].
   Vec<2> normal_at(const Vec<2>&) const { return any_normal<2>(along_); }
+  /// What one of its points lies on, to a seam [m].
   Feature feature(const Vec<2>& foot, double seam) const;
+  /// Its length from end to end, or its width [m].
   double size() const { return along_.norm(); }
+  /// The ends or corners of a straight piece, the ends of an arc [m].
   std::vector<Vec<2>> corners() const { return {from_, to_}; }
+  /// An axis-parallel box around it [m].
   Eigen::AlignedBox2d box() const { return Eigen::AlignedBox2d(from_).extend(to_); }
 
  private:
@@ -84,11 +85,17 @@ class Arc {
   const Vec<2>& centre() const { return centre_; }    ///< of the circle [m]
   double radius() const { return radius_; }           ///< of the circle [m]
 
+  /// The point of it that is nearest to x [m].
   Vec<2> nearest(const Vec<2>& x) const;
+  /// A unit normal at one of its points [-].
   Vec<2> normal_at(const Vec<2>& foot) const { return (foot - centre_).normalized(); }
+  /// What one of its points lies on, to a seam [m].
   Feature feature(const Vec<2>& foot, double seam) const;
+  /// Its length from end to end, or its width [m].
   double size() const { return radius_; }
+  /// The ends or corners of a straight piece, the ends of an arc [m].
   std::vector<Vec<2>> corners() const { return {from_, to_}; }
+  /// An axis-parallel box around it [m].
   Eigen::AlignedBox2d box() const;
 
  private:
@@ -115,10 +122,15 @@ class Plate {
   const std::vector<Vec<3>>& corners() const { return corners_; }  ///< as they were given [m]
   const Vec<3>& normal() const { return normal_; }  ///< unit; the corners turn left about it [-]
 
+  /// The point of it that is nearest to x [m].
   Vec<3> nearest(const Vec<3>& x) const;
+  /// A unit normal at one of its points [-].
   Vec<3> normal_at(const Vec<3>&) const { return normal_; }
+  /// What one of its points lies on, to a seam [m].
   Feature feature(const Vec<3>& foot, double seam) const;
+  /// Its length from end to end, or its width [m].
   double size() const { return size_; }
+  /// An axis-parallel box around it [m].
   Eigen::AlignedBox3d box() const;
 
  private:
@@ -142,11 +154,17 @@ struct Frustum {
   /// Why numbers make no frustum; empty if they make one.
   std::string defect() const;
 
+  /// The point of it that is nearest to x [m].
   Vec<3> nearest(const Vec<3>& x) const;
+  /// A unit normal at one of its points [-].
   Vec<3> normal_at(const Vec<3>& foot) const;
+  /// What one of its points lies on, to a seam [m].
   Feature feature(const Vec<3>& foot, double seam) const;
+  /// Its length from end to end, or its width [m].
   double size() const;
+  /// The ends or corners of a straight piece, the ends of an arc [m].
   std::vector<Vec<3>> corners() const { return {}; }
+  /// An axis-parallel box around it [m].
   Eigen::AlignedBox3d box() const;
 };
 

@@ -52,12 +52,12 @@ struct TrafficCounts {
   };
   /// A grain that left the domain.
   struct Lost {
-    int id = 0;
-    double time = 0;  ///< [s]
+    int id = 0;       ///< of the grain
+    double time = 0;  ///< when [s]
   };
 
-  std::vector<In> inlets;
-  std::vector<Out> outlets;
+  std::vector<In> inlets;        ///< in the scene's order
+  std::vector<Out> outlets;      ///< in the scene's order
   std::int64_t lost = 0;         ///< that left the domain
   std::vector<Lost> first_lost;  ///< the first of these
 };
