@@ -270,7 +270,7 @@ Eigen::Matrix3d rotation(const SpinVec<3>& axis, double angle) {
 template <int Dim>
 std::string Wall<Dim>::defect() const {
   if (const auto* path = std::get_if<Path<Dim>>(&motion)) {
-    if (const std::string why = defect_of(*path); !why.empty()) return why;
+    if (std::string why = defect_of(*path); !why.empty()) return why;
   }
   if (!turns()) return "";
   if (yields()) return "a piston does not turn";

@@ -196,7 +196,7 @@ struct RollingResistance {
       angle = smaller(Real(spring.before * spring.compliance), Real(1)) * angle;
     }
     angle = shortened<V>(angle + time_step * rate, limit * spring.compliance);
-    const V moment = shortened<V>(-(spring.stiffness * angle + spring.damping * rate), limit);
+    V moment = shortened<V>(-(spring.stiffness * angle + spring.damping * rate), limit);
     loss += -dot(moment, rate) * time_step - (0.5 * spring.stiffness * squared(angle) - stored);
     return moment;
   }

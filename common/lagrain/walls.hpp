@@ -319,7 +319,7 @@ struct Wall {
   using Frame = Eigen::Matrix<double, Dim, Dim>;
 
   template <class Shape>
-  static Wall at(std::string name, const Vec<Dim>& point, Shape shape) {
+  static Wall at(std::string&& name, const Vec<Dim>& point, Shape shape) {
     Wall wall;
     wall.name = std::move(name);
     wall.point = wall.home = point;

@@ -379,7 +379,7 @@ class Reader {
 
   static Region<Dim> read_region(TomlTable& s) {
     TomlTable inner = s.table(keys::kRegion, "{ low = [...], high = [...] }");
-    const Region<Dim> region{inner.template vector<Dim>(keys::kLow),
+    Region<Dim> region{inner.template vector<Dim>(keys::kLow),
                              inner.template vector<Dim>(keys::kHigh)};
     inner.finish();
     if (!(region.low.array() < region.high.array()).all()) {
@@ -389,7 +389,7 @@ class Reader {
   }
 
   static Region<Dim> read_corners(TomlTable& s) {
-    const Region<Dim> region{s.vector<Dim>(keys::kLow), s.vector<Dim>(keys::kHigh)};
+    Region<Dim> region{s.vector<Dim>(keys::kLow), s.vector<Dim>(keys::kHigh)};
     if (!(region.low.array() < region.high.array()).all()) {
       s.fail(keys::kHigh, "expected low below high in every direction");
     }

@@ -270,7 +270,7 @@ TEST_SUITE("grains that come and leave") {
 
   TEST_CASE("messages name the ids, which no other grain gets") {
     const auto law = make_law<LinearSpring>(kGravel);
-    const auto failure = [&](std::vector<Grain<2>> newcomers) -> std::string {
+    const auto failure = [&](const std::vector<Grain<2>>& newcomers) -> std::string {
       Sim<2, LinearSpring> sim(
           make_grains<2, Needs{}>({ball<2>({50, 0}), ball<2>({60, 0}), ball<2>({0, 0})}),
           LawTable<LinearSpring>(law), {Wall<2>::segment("fence", {20, -5}, {20, 5})},

@@ -114,16 +114,14 @@ TEST_SUITE("pieces of walls") {
   TEST_CASE(
       "a frustum, a cone, a short cylinder, a ring and a disc are met at their nearest point") {
     Random random(2);
-    for (const auto& [height, low, high] : {std::tuple{1.5, 0.5, 1.2},
-                                            {1.5, 0.0, 1.2},
-                                            {2.0, 0.8, 0.8},
-                                            {0.0, 0.4, 1.3},
-                                            {0.0, 0.0, 1.3},
-                                            {1.0, 1.2, 0.0}}) {
-      CAPTURE(height);
-      CAPTURE(low);
-      CAPTURE(high);
-      const Frustum frustum{Vec<3>(0.1, -0.2, 0.3), Vec<3>(2, 3, 6) / 7, height, low, high};
+    const Vec<3> base(0.1, -0.2, 0.3), axis = Vec<3>(2, 3, 6) / 7;
+    for (const Frustum& frustum :
+         {Frustum{base, axis, 1.5, 0.5, 1.2}, Frustum{base, axis, 1.5, 0, 1.2},
+          Frustum{base, axis, 2, 0.8, 0.8}, Frustum{base, axis, 0, 0.4, 1.3},
+          Frustum{base, axis, 0, 0, 1.3}, Frustum{base, axis, 1, 1.2, 0}}) {
+      CAPTURE(frustum.height);
+      CAPTURE(frustum.low_radius);
+      CAPTURE(frustum.high_radius);
       REQUIRE(frustum.defect().empty());
       compare<3>(frustum, 60, 0.1, random);
     }
