@@ -380,7 +380,7 @@ class Reader {
   static Region<Dim> read_region(TomlTable& s) {
     TomlTable inner = s.table(keys::kRegion, "{ low = [...], high = [...] }");
     Region<Dim> region{inner.template vector<Dim>(keys::kLow),
-                             inner.template vector<Dim>(keys::kHigh)};
+                       inner.template vector<Dim>(keys::kHigh)};
     inner.finish();
     if (!(region.low.array() < region.high.array()).all()) {
       s.fail(keys::kRegion, "expected low below high in every direction");
