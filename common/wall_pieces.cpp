@@ -75,6 +75,9 @@ Feature Arc::feature(const Vec<2>& foot, double seam) const {
   return at_end ? Feature::corner : Feature::face;
 }
 
+// Not the radius: a short arc of a wide circle has a narrow seam.
+double Arc::size() const { return box().diagonal().norm(); }
+
 Eigen::AlignedBox2d Arc::box() const {
   Eigen::AlignedBox2d box(from_);
   box.extend(to_);
@@ -284,8 +287,7 @@ double squared_distance(const WallPiece<Dim>& piece, const Vec<Dim>& x) {
   return std::visit([&](const auto& p) { return (p.nearest(x) - x).squaredNorm(); }, piece);
 }
 
-/// Up to so many pieces are looked at one by one. It was not tuned: a tree answers in the time of
-/// about ten.
+/// Up to so many pieces are looked at one by one. It was not tuned; only speed depends on it.
 constexpr std::size_t kFew = 8;
 
 }  // namespace

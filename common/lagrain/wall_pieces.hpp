@@ -92,7 +92,7 @@ class Arc {
   /// What one of its points lies on, to a seam [m].
   Feature feature(const Vec<2>& foot, double seam) const;
   /// Its length from end to end, or its width [m].
-  double size() const { return radius_; }
+  double size() const;
   /// The ends or corners of a straight piece, the ends of an arc [m].
   std::vector<Vec<2>> corners() const { return {from_, to_}; }
   /// An axis-parallel box around it [m].

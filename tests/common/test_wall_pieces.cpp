@@ -140,6 +140,12 @@ TEST_SUITE("pieces of walls") {
           1e-12);
   }
 
+  TEST_CASE("an arc is as large as it is long, however wide its circle") {
+    const Arc arc({-0.005, 0}, {0, 1e-6}, {0.005, 0});
+    CHECK(arc.radius() > 10);
+    CHECK(relative_error(arc.size(), 0.01) < 1e-6);
+  }
+
   TEST_CASE("what makes no piece is said") {
     CHECK(Arc::defect({0, 0}, {1, 0}, {2, 0}) == "the points of an arc lie on a line");
     CHECK(Arc::defect({0, 0}, {1, 0}, {0, 0}) == "two of the points of an arc are one");

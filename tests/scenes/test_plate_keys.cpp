@@ -16,22 +16,8 @@ using namespace lagrain::test;
 
 namespace {
 
-/// Line 14 is the first line of the wall's keys.
-const std::string kSpace = R"(dimension = 3
-duration = 1
-gravity = [0, 0, -9.81]
-normal = "linear"
-friction = "none"
-[law]
-stiffness = 1e5
-restitution = 0.5
-[materials.steel]
-density = 7800
-[[grain]]
-position = [0, 0, 1]
-radius = 0.1
-[[wall]]
-)";
+/// Line 15 is the first line of the wall's keys.
+const std::string kSpace = kSphere + "[[wall]]\n";
 
 template <int Dim>
 std::string message_of(const std::string& text) {

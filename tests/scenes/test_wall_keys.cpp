@@ -23,24 +23,11 @@ using namespace lagrain::test;
 
 namespace {
 
-const std::string kSpace = R"(dimension = 3
-duration = 1
-gravity = [0, 0, -9.81]
-normal = "linear"
-friction = "none"
-[law]
-stiffness = 1e5
-restitution = 0.5
-[materials.steel]
-density = 7800
-[[grain]]
-position = [0, 0, 9]
-radius = 0.1
-)";
+const std::string& kSpace = kSphere;
 
 std::string plane() {
   std::string text = with(kSpace, "dimension = 3", "dimension = 2");
-  return with(with(text, "[0, 0, -9.81]", "[0, -9.81]"), "[0, 0, 9]", "[0, 9]");
+  return with(with(text, "[0, 0, -9.81]", "[0, -9.81]"), "[0, 0, 1]", "[0, 1]");
 }
 
 template <int Dim>
@@ -301,7 +288,7 @@ TEST_SUITE("walls in scenes") {
 
   TEST_CASE("the series tells the work and the torque of a wall that turns") {
     const std::string scene = plane() +
-                              "[[wall]]\nname = \"drum\"\npoint = [0, 9.5]\nradius = 1\n"
+                              "[[wall]]\nname = \"drum\"\npoint = [0, 1.5]\nradius = 1\n"
                               "turning = { type = \"steady\", rate = 2 }\n";
     const std::string rough = with(scene, "friction = \"none\"", "friction = \"elastic\"");
     const auto run = make_run(parse_scene<2>(

@@ -56,6 +56,22 @@ from = [0, 0]
 to = [0, 1]
 )";
 
+/// A sphere of steel above a place where a test puts a wall, without friction. It has 13 lines.
+inline const std::string kSphere = R"(dimension = 3
+duration = 1
+gravity = [0, 0, -9.81]
+normal = "linear"
+friction = "none"
+[law]
+stiffness = 1e5
+restitution = 0.5
+[materials.steel]
+density = 7800
+[[grain]]
+position = [0, 0, 1]
+radius = 0.1
+)";
+
 /// `text` with one part replaced.
 inline std::string with(std::string text, const std::string& part, const std::string& instead) {
   const auto at = text.find(part);
