@@ -140,9 +140,11 @@ void measure(std::vector<Row>& rows, int turns, const StopCheck& check_stop) {
   }
 }
 
-double percent(int part, int whole) { return 100.0 * part / whole; }
+double hundredths(int part, int whole) { return 100.0 * part / whole; }
 
-double wrong_share(const Trial& trial) { return percent(trial.tally.wrong, trial.tally.queries); }
+double wrong_share(const Trial& trial) {
+  return hundredths(trial.tally.wrong, trial.tally.queries);
+}
 
 // ---- Pictures ----------------------------------------------------------------------------------
 
@@ -310,7 +312,7 @@ void add_rows(DisplayList& list, const Box& area, std::span<const Row> rows) {
       {{"(c) wrong signs of doubles",
         "share of calls [%]",
         {{1, "orientation"}, {2, "power side"}},
-        0.5 * percent(1, calls(false)),
+        0.5 * hundredths(1, calls(false)),
         50,
         14,
         wrong},
@@ -434,7 +436,7 @@ Table table_of(const std::vector<Row>& rows) {
   for (const Row& row : rows) {
     for (const Trial& t : row.trials) {
       const Tally& n = t.tally;
-      const auto share = [&](int part) { return rounded(percent(part, n.queries)) + " %"; };
+      const auto share = [&](int part) { return rounded(hundredths(part, n.queries)) + " %"; };
       table.rows.push_back({(row.dim == 2 ? "plane: " : "space: ") + row.sites, t.predicate,
                             share(n.wrong), share(n.opposite), share(n.ties), share(n.undecided),
                             two_digits(t.times[kPlain]), two_digits(t.times[kFiltered]),

@@ -498,8 +498,7 @@ const Updates& all_moved(const std::vector<Updates>& all, double displacement) {
 }
 
 std::string percent_taken_out(const Updates& u) {
-  return rounded(100 * static_cast<double>(u.ladder.extracted) / static_cast<double>(u.moved), 2) +
-         " %";
+  return percent(static_cast<double>(u.ladder.extracted) / static_cast<double>(u.moved));
 }
 
 std::string words(const std::array<std::vector<Updates>, 2>& updates,

@@ -41,8 +41,6 @@ Lengths lengths(bool quick) {
   return {800000, 150000, 10000000, 30000, 100, 64, {1, 1e2, 1e4, 1e6, 1e8}};
 }
 
-std::string percent(double share) { return rounded(100 * share, 2) + " %"; }
-
 /// An error message, quoted, without the remedy or the condition that follows it.
 std::string quoted(const std::string& message) {
   return "\"" + message.substr(0, std::min(message.find(';'), message.find(" (expected"))) + "\"";

@@ -395,8 +395,6 @@ DisplayList large_panel(const Run<2>& run, const Record& record, bool forces) {
   return list;
 }
 
-std::string percent(double fraction) { return rounded(100 * fraction, 2) + " %"; }
-
 }  // namespace
 
 FigureResult draw_figure5(const FigureOptions& options) {

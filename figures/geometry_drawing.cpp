@@ -7,7 +7,6 @@
 #include <lagrain/text.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 
@@ -264,13 +263,6 @@ void add_arrow(DisplayList& list, const Vec<2>& from, const Vec<2>& to, const St
   list.add(Segment{from, to, stroke});
   list.add(Segment{to, to - head * (along + 0.5 * across), stroke});
   list.add(Segment{to, to - head * (along - 0.5 * across), stroke});
-}
-
-std::string fixed(double value, int decimals) {
-  char buffer[32];
-  const auto end =
-      std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, decimals).ptr;
-  return {buffer, end};
 }
 
 void write_picture(const DisplayList& list, const std::filesystem::path& folder,

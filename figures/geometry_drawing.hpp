@@ -84,9 +84,6 @@ void add_detection_legend(DisplayList& list, const Vec<2>& left);
 /// Arrow with an open head.
 void add_arrow(DisplayList& list, const Vec<2>& from, const Vec<2>& to, const Stroke& stroke);
 
-/// A number with a fixed number of decimals; with significant digits see rounded.
-std::string fixed(double value, int decimals);
-
 /// Writes NAME.png (300 dpi) and NAME.pdf into the folder.
 void write_picture(const DisplayList& list, const std::filesystem::path& folder,
                    const std::string& name);

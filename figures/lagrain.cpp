@@ -74,12 +74,6 @@ std::string clock_text(double seconds) {
   return text;
 }
 
-std::string percent(double fraction) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%3.0f %%", 100 * fraction);
-  return text;
-}
-
 struct RunArguments {
   std::string scene;
   std::string out;
@@ -102,7 +96,7 @@ int run_scene(const RunArguments& arguments) {
   ProgressLine line;
   if (line.terminal()) {
     options.progress = [&](const Progress& p) {
-      line.show(percent(p.fraction) + "  t = " + rounded(p.time, 4) + " s of " +
+      line.show(fixed(100 * p.fraction, 0) + " %  t = " + rounded(p.time, 4) + " s of " +
                 rounded(scene.duration, 4) + " s  " + std::to_string(p.contacts) + " contacts  " +
                 clock_text(p.seconds_left) + " left");
     };
@@ -136,7 +130,7 @@ void show_progress(FigureOptions& options, ProgressLine& line) {
     const auto now = std::chrono::steady_clock::now();
     if (now - last < std::chrono::milliseconds(100)) return;
     last = now;
-    line.show(percent(fraction) + "  " + doing);
+    line.show(fixed(100 * fraction, 0) + " %  " + doing);
   };
 }
 

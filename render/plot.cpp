@@ -2,12 +2,12 @@
 #include <lagrain/plot.hpp>
 
 #include <lagrain/check.hpp>
+#include <lagrain/numbers.hpp>
 #include <lagrain/text.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numbers>
 
@@ -26,12 +26,8 @@ int tick_count(double length, double each) {
 
 // A number in the markup of labels. Minus signs need mathematics; digits look alike in both fonts.
 std::string number(double value, int decimals) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
-  std::string out = text.data();
-  if (out.find_first_of("123456789") == std::string::npos && out[0] == '-') out.erase(0, 1);
-  if (out[0] == '-') out = std::string("$-$").append(out, 1);
-  return out;
+  const std::string text = fixed(value, decimals);
+  return text[0] == '-' ? "$-$" + text.substr(1) : text;
 }
 
 // The shortest decimal form with at most six decimals.

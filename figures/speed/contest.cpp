@@ -6,6 +6,7 @@
 #include "lammps_turns.hpp"
 
 #include <lagrain/cell_grid.hpp>
+#include <lagrain/numbers.hpp>
 #include <lagrain/triangulation_neighbourhood.hpp>
 
 #include <algorithm>
@@ -29,15 +30,6 @@ std::string folder_name(const std::string& scene) {
     }
   }
   return name;
-}
-
-/// Grains with commas between the thousands.
-std::string grouped(int count) {
-  std::string text = std::to_string(count);
-  for (auto at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0; at -= 3) {
-    text.insert(static_cast<std::size_t>(at), 1, ',');
-  }
-  return text;
 }
 
 /// The oracle knows the contacts for nothing: what the run spends on asking it does not count.
