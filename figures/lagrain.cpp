@@ -9,6 +9,7 @@
 
 #include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
+#include <lagrain/units.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -19,6 +20,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -30,6 +33,9 @@ using namespace lagrain;
 constexpr int kSimulationFailed = 1;
 constexpr int kBadInput = 2;
 constexpr int kStopped = 130;  // 128 + SIGINT, as shells have it
+
+constexpr const char* kUntil = "--until";
+constexpr const char* kCheckpointEvery = "--checkpoint-every";
 
 volatile std::sig_atomic_t stop_requested = 0;
 
@@ -74,46 +80,104 @@ std::string clock_text(double seconds) {
   return text;
 }
 
-struct RunArguments {
-  std::string scene;
-  std::string out;
-  bool explain = false;
+/// What running and resuming have in common.
+struct RecordArguments {
   int threads = 0;
+  std::string checkpoint_every = rounded(RecordOptions{}.checkpoint_every) + " s";
 };
 
-template <int Dim>
-int run_scene(const RunArguments& arguments) {
-  const Scene<Dim> scene = read_scene<Dim>(arguments.scene);
-  const auto run = make_run(scene, arguments.threads);
-  if (arguments.explain) {
-    std::cout << explain(*run);
-    return 0;
+/// The time [s] that a flag gives.
+double seconds_of(const std::string& flag, const std::string& text) {
+  try {
+    const Quantity time = parse_quantity(text);
+    if (time.unit == Unit{.second = 1} && time.value >= 0) return time.value;
+  } catch (const std::invalid_argument&) {  // said below
   }
+  throw SceneError(flag + ": expected a time such as \"90 s\" or \"2 min\", got \"" + text + "\"");
+}
+
+/// Records a run, with progress on a terminal, and says how it ended.
+/// @param record_run  record_run(options)
+template <int Dim, class Record>
+int record_with_progress(const Run<Dim>& run, const fs::path& folder,
+                         const RecordArguments& arguments, Record&& record_run) {
   RecordOptions options;
-  options.folder = arguments.out.empty() ? fs::path("runs") / fs::path(arguments.scene).stem()
-                                         : fs::path(arguments.out);
+  options.folder = folder;
   options.stop = stopping;
+  options.checkpoint_every = seconds_of(kCheckpointEvery, arguments.checkpoint_every);
   ProgressLine line;
   if (line.terminal()) {
     options.progress = [&](const Progress& p) {
       line.show(fixed(100 * p.fraction, 0) + " %  t = " + rounded(p.time, 4) + " s of " +
-                rounded(scene.duration, 4) + " s  " + std::to_string(p.contacts) + " contacts  " +
-                clock_text(p.seconds_left) + " left");
+                rounded(run.scene().duration, 4) + " s  " + std::to_string(p.contacts) +
+                " contacts  " + clock_text(p.seconds_left) + " left");
     };
   }
-  const bool finished = record(*run, options);
+  const bool finished = record_run(options);
   line.clear();
   if (finished) {
-    std::cout << "wrote " << options.folder.string() << "\n";
+    std::cout << "wrote " << folder.string() << "\n";
     return 0;
   }
-  std::cerr << "lagrain: stopped at t = " << rounded(run->time(), 4)
-            << " s; what was computed is in " << options.folder.string() << "\n";
+  std::cerr << "lagrain: stopped at t = " << rounded(run.time(), 4)
+            << " s; what was computed is in " << folder.string() << " (to go on: lagrain resume "
+            << folder.string() << ")\n";
   return kStopped;
+}
+
+struct RunArguments : RecordArguments {
+  std::string scene;
+  std::string out;
+  bool explain = false;
+};
+
+template <int Dim>
+int run_scene(const RunArguments& arguments) {
+  const auto run = make_run(read_scene<Dim>(arguments.scene), arguments.threads);
+  if (arguments.explain) {
+    std::cout << explain(*run);
+    return 0;
+  }
+  const fs::path folder = arguments.out.empty()
+                              ? fs::path("runs") / fs::path(arguments.scene).stem()
+                              : fs::path(arguments.out);
+  return record_with_progress(*run, folder, arguments,
+                              [&](const RecordOptions& options) { return record(*run, options); });
 }
 
 int run_command(const RunArguments& arguments) {
   return scene_dimension(arguments.scene) == 2 ? run_scene<2>(arguments) : run_scene<3>(arguments);
+}
+
+struct ResumeArguments : RecordArguments {
+  std::string folder;
+  std::string until;
+};
+
+template <int Dim>
+int resume_scene(const ResumeArguments& arguments, const Checkpoint& checkpoint) {
+  std::optional<double> until;
+  if (!arguments.until.empty()) until = seconds_of(kUntil, arguments.until);
+  const auto run = resume_run<Dim>(checkpoint, until, arguments.threads);
+  if (run->finished()) {
+    std::cout << arguments.folder << " is at its end, t = " << rounded(run->time(), 4)
+              << " s; to go further: --until\n";
+    return 0;
+  }
+  std::cout << "from t = " << rounded(run->time(), 4) << " s\n";
+  return record_with_progress(*run, arguments.folder, arguments, [&](const RecordOptions& options) {
+    return record_on(*run, checkpoint, options);
+  });
+}
+
+int resume_command(const ResumeArguments& arguments) {
+  const Checkpoint checkpoint = read_checkpoint(arguments.folder);
+  if (!checkpoint.trouble.empty()) {
+    std::cerr << "lagrain: " << checkpoint.trouble << "; taking " << checkpoint.file.string()
+              << " instead\n";
+  }
+  return checkpoint_dimension(checkpoint) == 2 ? resume_scene<2>(arguments, checkpoint)
+                                               : resume_scene<3>(arguments, checkpoint);
 }
 
 struct FigureArguments {
@@ -185,6 +249,15 @@ int report_command(const FigureArguments& arguments) {
   return 0;
 }
 
+void add_record_options(CLI::App& app, RecordArguments& arguments) {
+  app.add_option("--threads", arguments.threads,
+                 "threads that share a step (default: as many as pay)")
+      ->check(CLI::Range(1, 1024));
+  app.add_option(kCheckpointEvery, arguments.checkpoint_every,
+                 "wall-clock time between checkpoints, from which a run can be resumed")
+      ->capture_default_str();
+}
+
 int complain(const std::string& sentence, int code) {
   std::cerr << "lagrain: " << sentence << "\n";
   return code;
@@ -202,10 +275,14 @@ int main(int argc, char** argv) {
   CLI::App* run_app = app.add_subcommand("run", "Run a scene and write a folder");
   run_app->add_option("scene", run.scene, "scene file (TOML)")->required();
   run_app->add_option("--out", run.out, "folder to write (default: runs/NAME of the scene)");
-  run_app
-      ->add_option("--threads", run.threads, "threads that share a step (default: as many as pay)")
-      ->check(CLI::Range(1, 1024));
+  add_record_options(*run_app, run);
   run_app->add_flag("--explain", run.explain, "say what the scene is made of; run nothing");
+
+  ResumeArguments resume;
+  CLI::App* resume_app = app.add_subcommand("resume", "Go on with a run from its last checkpoint");
+  resume_app->add_option("folder", resume.folder, "folder of the run")->required();
+  resume_app->add_option(kUntil, resume.until, "new end, \"2.5 s\" (default: the scene's)");
+  add_record_options(*resume_app, resume);
 
   FigureArguments figure;
   CLI::App* figure_app = app.add_subcommand("figure", "Draw figures and their gallery");
@@ -231,6 +308,7 @@ int main(int argc, char** argv) {
   std::signal(SIGTERM, request_stop);
   try {
     if (report_app->parsed()) return report_command(report);
+    if (resume_app->parsed()) return resume_command(resume);
     return run_app->parsed() ? run_command(run) : figure_command(figure);
   } catch (const SceneError& error) {
     return complain(error.what(), kBadInput);

@@ -6,6 +6,7 @@
 #include <lagrain/contact_search.hpp>
 #include <lagrain/neighbourhood.hpp>
 #include <lagrain/pinned_grains.hpp>
+#include <lagrain/state.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -21,6 +22,13 @@ class ContactAudit {
   std::int64_t checks() const { return checks_; }      ///< times that `check` was called
   std::int64_t contacts() const { return contacts_; }  ///< contacts found from nothing
   std::int64_t missed() const { return missed_; }      ///< of these, not in the near list
+
+  /// Keeps or restores what it has counted.
+  void persist(StateVisitor visit) {
+    visit("checks", checks_);
+    visit("contacts", contacts_);
+    visit("missed", missed_);
+  }
 
   /// @param near    sorted pairs that claim to hold every contact at centres x [m]
   /// @param pinned  grains that touch no other one of them

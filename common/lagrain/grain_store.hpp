@@ -7,6 +7,7 @@
 #include <lagrain/grains.hpp>
 #include <lagrain/records.hpp>
 #include <lagrain/spatial_order.hpp>
+#include <lagrain/state.hpp>
 #include <lagrain/vec.hpp>
 
 #include <cstddef>
@@ -152,6 +153,30 @@ class GrainStore {
     return slot_of;
   }
 
+  /// Keeps or restores the grains, each in a row, in the order of the slots.
+  /// @throws SceneError if the state holds no such grains
+  void persist(StateVisitor visit) {
+    Grains<Dim, needs> g = visit.restores() ? Grains<Dim, needs>{} : in_slots();
+    std::vector<int> number(records_.size());
+    for (int slot = 0; slot < count(); ++slot) number[index(slot)] = this->number(slot);
+    visit("number", number);
+    visit("ids", ids_);
+    visit("next_id", next_id_);
+    visit("position", g.position);
+    visit("velocity", g.velocity);
+    visit("force", g.force);
+    visit("radius", g.radius);
+    visit("mass", g.mass);
+    visit("inverse_mass", g.inverse_mass);
+    visit("material", g.material);
+    if constexpr (needs.spin) {
+      visit("omega", g.omega);
+      visit("torque", g.torque);
+      visit("inverse_inertia", g.inverse_inertia);
+    }
+    if (visit.restores()) restore(std::move(g), std::move(number));
+  }
+
   /// @throws SimulationError if a place or velocity is not a number; it names the time t [s]
   void expect_finite(double t) const {
     for (int slot = 0; slot < count(); ++slot) {
@@ -207,6 +232,37 @@ class GrainStore {
       }
       if (!materials_.empty()) materials_[index(slot)] = g.material[index(i)];
     }
+  }
+
+  /// The grains as they are now, by slot.
+  Grains<Dim, needs> in_slots() const {
+    std::vector<int> all(records_.size());
+    for (int slot = 0; slot < count(); ++slot) all[index(slot)] = number(slot);
+    return joined(by_number(), all, make_grains<Dim, needs>({}));
+  }
+
+  /// @param g        grains by slot
+  /// @param numbers  of the slots
+  void restore(Grains<Dim, needs> g, std::vector<int> numbers) {
+    const auto n = g.radius.size();
+    bool sound = numbers.size() == index(n) && (ids_.empty() || ids_.size() == index(n)) &&
+                 g.position.cols() == n && g.velocity.cols() == n && g.force.cols() == n &&
+                 g.mass.size() == n && g.inverse_mass.size() == n &&
+                 (g.material.empty() || g.material.size() == index(n));
+    if constexpr (needs.spin) {
+      sound = sound && g.omega.cols() == n && g.torque.cols() == n && g.inverse_inertia.size() == n;
+    }
+    std::vector<int> slot_of(index(n), -1);
+    for (int slot = 0; sound && slot < n; ++slot) {
+      const int i = numbers[index(slot)];
+      sound = i >= 0 && i < n && slot_of[index(i)] < 0;
+      if (sound) slot_of[index(i)] = slot;
+    }
+    if (!sound) throw SceneError("its grains do not fit together");
+    by_number_ = joined(g, slot_of, make_grains<Dim, needs>({}));
+    by_number_is_known_ = true;
+    numbers_ = std::move(numbers);
+    seat();
   }
 
   void put_together() const {

@@ -17,6 +17,7 @@
 #include <lagrain/records.hpp>
 #include <lagrain/setting.hpp>
 #include <lagrain/simulation_input.hpp>
+#include <lagrain/state.hpp>
 #include <lagrain/stopwatch.hpp>
 #include <lagrain/threads.hpp>
 #include <lagrain/walls.hpp>
@@ -91,6 +92,20 @@ class GrainSystem {
     LAGRAIN_EXPECTS(threads >= 1, "threads " + std::to_string(threads));
     setting_.threads = threads;
   }
+  /// Keeps all that a simulation with the same laws, walls and setting needs to go on with the same
+  /// bits, or restores it. What has been measured of its speed is not part of it.
+  /// @throws SceneError if the state is not that of such a simulation; which is of no use then
+  void persist(StateVisitor visit) {
+    visit("step", steps_);
+    flow_.persist(visit.in("energy"));
+    for (std::size_t w = 0; w < walls_.size(); ++w) {
+      walls_[w].persist(visit.in("walls").in(std::to_string(w)));
+    }
+    store_.persist(visit.in("grains"));
+    near_.persist(visit.in("memory"), count(), block_size());
+    if (visit.restores()) go_on();
+  }
+
   /// Where the time went while it was measured.
   const PhaseTimes& times() const { return times_; }
   /// Whether the time of each phase is measured from now on.
@@ -316,6 +331,16 @@ class GrainSystem {
     Body<Dim, needs> b{g.position.col(i), g.velocity.col(i), g.radius[i], g.inverse_mass[i], {}};
     if constexpr (needs.spin) b.omega = g.omega.col(i);
     return b;
+  }
+
+  /// Everything is as a state says: what is kept besides to be fast follows.
+  void go_on() {
+    forces_ = ContactForces<Dim, Law>(setting_.instructions, store_.materials().empty());
+    forces_.measure_time(measuring_);
+    watch_ = PassageWatch<Dim>(walls_, time());
+    meet_grains();
+    if constexpr (requires { neighbourhood_.forget(); }) neighbourhood_.forget();
+    update_triangulation(time());
   }
 
   /// What the contacts with a wall have stored [J].

@@ -9,14 +9,17 @@
 #include <lagrain/neighbourhood.hpp>
 #include <lagrain/pair_table.hpp>
 #include <lagrain/pinned_grains.hpp>
+#include <lagrain/state.hpp>
 #include <lagrain/walls.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -218,46 +221,35 @@ class NearList {
   /// @param size        number of grains from now on
   /// @param block_size  of slots from now on
   void renumber(const std::vector<int>& slot, int size, int block_size) {
-    std::vector<std::pair<Pair, Memory>> pairs;
-    std::vector<std::pair<WallPair, Memory>> wall_pairs;
-    for (const Block& block : blocks_) {
-      for (const auto* table : {&block.within, &block.across}) {
-        for (std::size_t k = 0; k < table->size(); ++k) {
-          const Pair old = table->pairs()[k];
-          const Pair pair{slot[index(old.i)], slot[index(old.j)]};
-          if (pair.i < 0 || pair.j < 0) continue;
-          if (pair.i < pair.j) {
-            pairs.emplace_back(pair, table->memory(k));
-          } else {
-            pairs.emplace_back(Pair{pair.j, pair.i}, table->memory(k).seen_from_partner());
-          }
-        }
-      }
-      for (std::size_t k = 0; k < block.walls.size(); ++k) {
-        WallPair pair = block.walls.pairs()[k];
-        pair.i = slot[index(pair.i)];
-        if (pair.i >= 0) wall_pairs.emplace_back(pair, block.walls.memory(k));
+    auto [pairs, wall_pairs] = memories();
+    for (auto& [pair, memory] : pairs) {
+      pair = {slot[index(pair.i)], slot[index(pair.j)]};
+      if (pair.i > pair.j) {
+        std::swap(pair.i, pair.j);
+        memory = memory.seen_from_partner();
       }
     }
-    sort_by_pair(pairs);
-    sort_by_pair(wall_pairs);
-    reset(size, block_size);
-    auto pair = pairs.cbegin();
-    auto wall_pair = wall_pairs.cbegin();
-    for (Block& block : blocks_) {
-      const auto last = std::find_if(
-          pair, pairs.cend(), [&](const auto& entry) { return entry.first.i >= block.end_slot; });
-      const auto inside = [&](const Pair& p) { return p.j < block.end_slot; };
-      assign(block.within, pair, last, inside);
-      assign(block.across, pair, last, std::not_fn(inside));
-      pair = last;
-      const auto last_wall = std::find_if(wall_pair, wall_pairs.cend(), [&](const auto& entry) {
-        return entry.first.i >= block.end_slot;
-      });
-      assign(block.walls, wall_pair, last_wall, [](const WallPair&) { return true; });
-      wall_pair = last_wall;
+    std::erase_if(pairs, [](const auto& entry) { return entry.first.i < 0; });
+    for (auto& entry : wall_pairs) entry.first.i = slot[index(entry.first.i)];
+    std::erase_if(wall_pairs, [](const auto& entry) { return entry.first.i < 0; });
+    deal(std::move(pairs), std::move(wall_pairs), size, block_size);
+  }
+
+  /// Keeps or restores what contacts remember; after that the list waits for a refresh.
+  /// @param size        number of grains from now on
+  /// @param block_size  of slots from now on
+  /// @throws SceneError if the state holds no such memories
+  void persist(StateVisitor visit, int size, int block_size) {
+    if constexpr (Memory::kReals > 0) {
+      auto [pairs, wall_pairs] = memories();
+      persist_memories(visit.in("contacts"), pairs,
+                       [&](const Pair& p) { return 0 <= p.i && p.i < p.j && p.j < size; });
+      persist_memories(visit.in("wall_contacts"), wall_pairs,
+                       [&](const WallPair& p) { return 0 <= p.i && p.i < size; });
+      if (visit.restores()) deal(std::move(pairs), std::move(wall_pairs), size, block_size);
+    } else if (visit.restores()) {
+      reset(size, block_size);
     }
-    list_ends();
   }
 
   /// Checks what is listed against a search from nothing, and what is kept beside it; empty means
@@ -356,6 +348,102 @@ class NearList {
     const Stay &a = stay_[index(pair.i)], &b = stay_[index(pair.j)];
     return within_reach<Dim>(a.centre, radius[pair.i] + std::sqrt(a.squared_margin), b.centre,
                              radius[pair.j] + std::sqrt(b.squared_margin));
+  }
+
+  /// Listed pairs with what their contacts remember.
+  using PairMemories = std::vector<std::pair<Pair, Memory>>;
+  using WallMemories = std::vector<std::pair<WallPair, Memory>>;
+
+  /// Those of the pairs that remember anything: not all bits of their memories are zero.
+  std::pair<PairMemories, WallMemories> memories() const {
+    PairMemories pairs;
+    WallMemories wall_pairs;
+    const auto collect = [&](const auto& table, auto& entries) {
+      for (std::size_t k = 0; k < table.size(); ++k) {
+        const Memory memory = table.memory(k);
+        bool remembers = false;
+        if constexpr (Memory::kReals > 0) {
+          for (int r = 0; r < Memory::kReals; ++r) {
+            remembers = remembers || std::bit_cast<std::uint64_t>(memory[r]) != 0;
+          }
+        }
+        if (remembers) entries.emplace_back(table.pairs()[k], memory);
+      }
+    };
+    for (const Block& block : blocks_) {
+      collect(block.within, pairs);
+      collect(block.across, pairs);
+      collect(block.walls, wall_pairs);
+    }
+    return {std::move(pairs), std::move(wall_pairs)};
+  }
+
+  /// Keeps or restores pairs and memories, each in a row.
+  /// @param sound  whether a pair can be one
+  template <class P, class Sound>
+  static void persist_memories(StateVisitor visit, std::vector<std::pair<P, Memory>>& entries,
+                               Sound&& sound) {
+    std::vector<std::int32_t> first(entries.size()), second(entries.size()), piece(entries.size());
+    Eigen::Matrix<double, Memory::kReals, Eigen::Dynamic> memory(
+        Memory::kReals, static_cast<Eigen::Index>(entries.size()));
+    constexpr bool with_wall = std::is_same_v<P, WallPair>;
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      const P& pair = entries[k].first;
+      first[k] = pair.i;
+      if constexpr (with_wall) {
+        second[k] = pair.wall;
+        piece[k] = pair.piece;
+      } else {
+        second[k] = pair.j;
+      }
+      for (int r = 0; r < Memory::kReals; ++r) {
+        memory(r, static_cast<Eigen::Index>(k)) = entries[k].second[r];
+      }
+    }
+    visit("slot", first);
+    visit(with_wall ? "wall" : "partner", second);
+    if (with_wall) visit("piece", piece);
+    visit("memory", memory);
+    if (!visit.restores()) return;
+    if (second.size() != first.size() || memory.cols() != static_cast<Eigen::Index>(first.size()) ||
+        (with_wall && piece.size() != first.size())) {
+      throw SceneError("its contacts do not fit together");
+    }
+    entries.resize(first.size());
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      if constexpr (with_wall) {
+        entries[k].first = {first[k], second[k], piece[k]};
+      } else {
+        entries[k].first = {first[k], second[k]};
+      }
+      if (!sound(entries[k].first)) throw SceneError("a contact of it is of no two of its grains");
+      for (int r = 0; r < Memory::kReals; ++r) {
+        entries[k].second[r] = memory(r, static_cast<Eigen::Index>(k));
+      }
+    }
+  }
+
+  /// Begins anew with these pairs and memories.
+  void deal(PairMemories pairs, WallMemories wall_pairs, int size, int block_size) {
+    sort_by_pair(pairs);
+    sort_by_pair(wall_pairs);
+    reset(size, block_size);
+    auto pair = pairs.cbegin();
+    auto wall_pair = wall_pairs.cbegin();
+    for (Block& block : blocks_) {
+      const auto last = std::find_if(
+          pair, pairs.cend(), [&](const auto& entry) { return entry.first.i >= block.end_slot; });
+      const auto inside = [&](const Pair& p) { return p.j < block.end_slot; };
+      assign(block.within, pair, last, inside);
+      assign(block.across, pair, last, std::not_fn(inside));
+      pair = last;
+      const auto last_wall = std::find_if(wall_pair, wall_pairs.cend(), [&](const auto& entry) {
+        return entry.first.i >= block.end_slot;
+      });
+      assign(block.walls, wall_pair, last_wall, [](const WallPair&) { return true; });
+      wall_pair = last_wall;
+    }
+    list_ends();
   }
 
   template <class P>

@@ -6,6 +6,7 @@
 
 #include <lagrain/grains.hpp>
 #include <lagrain/simulation.hpp>
+#include <lagrain/state.hpp>
 
 #include <Eigen/Geometry>
 
@@ -30,6 +31,17 @@ struct Ledger {
   /// What is in the system or has left it; constant in exact arithmetic with an exact integrator.
   double balance() const {
     return kinetic + gravity + elastic + dashpot + friction - wall_work - carried;
+  }
+
+  /// Keeps or restores it.
+  void persist(StateVisitor visit) {
+    visit("kinetic", kinetic);
+    visit("gravity", gravity);
+    visit("elastic", elastic);
+    visit("wall_work", wall_work);
+    visit("dashpot", dashpot);
+    visit("friction", friction);
+    visit("carried", carried);
   }
 };
 

@@ -4,10 +4,14 @@
 /// Random numbers that are the same on every platform: the standard fixes the engine's output but
 /// not its distributions, so the distributions are ours.
 
+#include <lagrain/state.hpp>
+
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <random>
+#include <sstream>
+#include <string>
 
 namespace lagrain {
 
@@ -30,6 +34,16 @@ class Random {
   double normal() {
     const double radius = std::sqrt(-2 * std::log(1 - uniform()));
     return radius * std::cos(2 * std::numbers::pi * uniform());
+  }
+
+  /// Keeps or restores where it is in its sequence, in the words of the standard library.
+  void persist(StateVisitor visit) {
+    std::stringstream text;
+    text << engine_;
+    std::string words = text.str();
+    visit("engine", words);
+    std::stringstream restored(words);
+    if (!(restored >> engine_)) throw SceneError("its random numbers cannot be read");
   }
 
  private:

@@ -5,6 +5,7 @@
 /// `PhaseTimes` are what it counts.
 
 #include <lagrain/contact_kernel.hpp>
+#include <lagrain/state.hpp>
 #include <lagrain/vec.hpp>
 
 namespace lagrain {
@@ -27,6 +28,14 @@ struct EnergyFlow {
   double dashpot = 0;    ///< taken by normal dashpots
   double friction = 0;   ///< taken by friction
   double carried = 0;    ///< by grains that came, less that of grains that left
+
+  /// Keeps or restores it.
+  void persist(StateVisitor visit) {
+    visit("wall_work", wall_work);
+    visit("dashpot", dashpot);
+    visit("friction", friction);
+    visit("carried", carried);
+  }
 };
 
 /// Wall-clock time spent so far [s]. What is done once per step is measured only if asked for.

@@ -5,6 +5,7 @@
 /// Walls that meet are one surface: contact_foot() says which of their pieces a grain touches.
 
 #include <lagrain/check.hpp>
+#include <lagrain/state.hpp>
 #include <lagrain/vec.hpp>
 #include <lagrain/wall_pieces.hpp>
 
@@ -313,6 +314,21 @@ struct Wall {
     std::visit([&](const auto& m) { follow(m, t, dt); }, motion);
     if (turns()) turn_to(t);
     gone = t >= until;
+  }
+
+  /// Keeps or restores what changes in time.
+  /// @throws SceneError if the state holds no such wall
+  void persist(StateVisitor visit) {
+    visit("point", point);
+    visit("velocity", velocity);
+    visit("spin", spin);
+    visit("pivot", pivot);
+    visit("angle", angle);
+    visit("frame", frame_);
+    visit("gone", gone);
+    visit("force", force);
+    visit("torque", torque);
+    visit("work", work);
   }
 
  private:

@@ -11,20 +11,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kMostDigits = 18;  // of the number of a frame
+
 std::string numbered(std::int64_t number) {
   std::string digits = std::to_string(number);
   if (digits.size() < 4) digits.insert(0, 4 - digits.size(), '0');
   return digits + ".csv";
 }
 
-/// Removes NNNN.csv of an earlier run; whatever else lies there is not ours.
-void remove_numbered(const fs::path& folder) {
+/// Removes NNNN.csv of an earlier run, from a number on; whatever else lies there is not ours.
+void remove_numbered(const fs::path& folder, std::int64_t first) {
   std::error_code failure;
   std::vector<fs::path> old;
   for (const auto& entry : fs::directory_iterator(folder, failure)) {
     const std::string stem = entry.path().stem().string();
     if (entry.path().extension() == ".csv" && stem.size() >= 4 &&
-        std::all_of(stem.begin(), stem.end(), [](char c) { return c >= '0' && c <= '9'; })) {
+        std::all_of(stem.begin(), stem.end(), [](char c) { return c >= '0' && c <= '9'; }) &&
+        stem.size() <= kMostDigits && std::stoll(stem) >= first) {
       old.push_back(entry.path());
     }
   }
@@ -35,12 +38,8 @@ void remove_numbered(const fs::path& folder) {
 
 template <int Dim>
 void CsvFormat<Dim>::begin(const Run<Dim>& run) {
-  make_folder(folder_ / "frames");
-  if (run.scene().output.contacts) make_folder(folder_ / "contacts");
-  remove_numbered(folder_ / "frames");
-  remove_numbered(folder_ / "contacts");
-  std::error_code ignored;
-  fs::remove(folder_ / "last.csv", ignored);
+  make_folders(run);
+  remove_frames(0);
   series_.emplace(folder_ / "series.csv");
   frames_.emplace(folder_ / "frames.csv");
 
@@ -51,6 +50,42 @@ void CsvFormat<Dim>::begin(const Run<Dim>& run) {
   header.end();
   series_->add(header.take());
   frames_->add(Csv("frame[-],step[-],time[s]").take());
+}
+
+template <int Dim>
+void CsvFormat<Dim>::sync_to_disk() const {
+  series_->sync_to_disk();
+  frames_->sync_to_disk();
+}
+
+template <int Dim>
+void CsvFormat<Dim>::persist(const Run<Dim>& run, StateVisitor visit, std::int64_t frames) {
+  std::int64_t series_length = 0, frames_length = 0;
+  if (!visit.restores()) {
+    series_length = static_cast<std::int64_t>(series_->length());
+    frames_length = static_cast<std::int64_t>(frames_->length());
+  }
+  visit("series_bytes", series_length);
+  visit("frames_bytes", frames_length);
+  if (!visit.restores()) return;
+  make_folders(run);
+  series_.emplace(folder_ / "series.csv", static_cast<std::uintmax_t>(series_length));
+  frames_.emplace(folder_ / "frames.csv", static_cast<std::uintmax_t>(frames_length));
+  remove_frames(frames);
+}
+
+template <int Dim>
+void CsvFormat<Dim>::make_folders(const Run<Dim>& run) const {
+  make_folder(folder_ / "frames");
+  if (run.scene().output.contacts) make_folder(folder_ / "contacts");
+}
+
+template <int Dim>
+void CsvFormat<Dim>::remove_frames(std::int64_t first) const {
+  remove_numbered(folder_ / "frames", first);
+  remove_numbered(folder_ / "contacts", first);
+  std::error_code ignored;
+  fs::remove(folder_ / "last.csv", ignored);
 }
 
 template <int Dim>

@@ -3,6 +3,9 @@
 
 #include <lagrain/check.hpp>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstring>
 #include <sstream>
@@ -66,9 +69,30 @@ void make_folder(const fs::path& folder) {
   fs::remove(probe, failure);
 }
 
-GrowingFile::GrowingFile(fs::path file) : file_(std::move(file)) {
+void sync_to_disk(const fs::path& file) {
   errno = 0;
-  out_.open(file_, std::ios::binary | std::ios::trunc);
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool synced = descriptor >= 0 && ::fsync(descriptor) == 0;
+  const std::string reason = last_reason();
+  if (descriptor >= 0) ::close(descriptor);
+  if (!synced) cannot_write(file, reason);
+}
+
+GrowingFile::GrowingFile(fs::path file, std::uintmax_t length)
+    : file_(std::move(file)), length_(length) {
+  if (length > 0) {
+    std::error_code failure;
+    const std::uintmax_t size = fs::file_size(file_, failure);
+    if (failure) cannot_write(file_, failure.message());
+    if (size < length) {
+      cannot_write(file_, "it has lost some of its rows: " + std::to_string(size) + " of " +
+                              std::to_string(length) + " bytes are there");
+    }
+    fs::resize_file(file_, length, failure);
+    if (failure) cannot_write(file_, failure.message());
+  }
+  errno = 0;
+  out_.open(file_, std::ios::binary | (length > 0 ? std::ios::app : std::ios::trunc));
   if (!out_) cannot_write(file_, last_reason());
 }
 
@@ -77,6 +101,7 @@ void GrowingFile::add(std::string_view text) {
   out_.write(text.data(), static_cast<std::streamsize>(text.size()));
   out_.flush();
   if (!out_) cannot_write(file_, last_reason());
+  length_ += text.size();
 }
 
 }  // namespace lagrain

@@ -36,6 +36,13 @@ class Schedule {
   void advance() {
     while (next_ <= run_.steps() && next_ < run_.steps_planned()) next_ = step_of(++count_);
   }
+  /// Keeps or restores it, at a step at which nothing is due any more.
+  void persist(StateVisitor visit, const std::string& name) {
+    visit(name, count_);
+    if (!visit.restores()) return;
+    next_ = step_of(count_);
+    advance();
+  }
 
  private:
   /// One that would come a step before the end is the last.
@@ -55,6 +62,12 @@ struct Largest {
   double overlap = 0;   // of the smaller radius [-]
   double residual = 0;  // [J]
   double energy = 0;    // in the ledger [J]
+
+  void persist(StateVisitor visit) {
+    visit("overlap", overlap);
+    visit("residual", residual);
+    visit("energy", energy);
+  }
 
   void look_at(const Ledger& now, const Ledger& start, const ContactStatistics& statistics) {
     overlap = std::max(overlap, statistics.largest_overlap);
@@ -76,15 +89,43 @@ class Recorder {
         samples_(run, or_else(run.scene().output.series_every, run.scene().duration / 1000)),
         frames_(run, or_else(run.scene().output.frames_every, run.scene().duration)) {
     formats_.push_back(std::make_unique<CsvFormat<Dim>>(options.folder));
-    make_folder(options.folder);
+  }
+
+  /// Begins an empty folder.
+  void begin() {
+    make_folder(options_.folder);
     std::error_code ignored;
-    fs::remove(options.folder / "summary.txt", ignored);
+    fs::remove(options_.folder / "summary.txt", ignored);
+    remove_checkpoints(options_.folder);
     write_scene();
-    for (auto& format : formats_) format->begin(run);
+    for (auto& format : formats_) format->begin(run_);
+  }
+
+  /// Keeps where the run and its folder are; or goes on with the folder, where the run is already.
+  void persist(StateVisitor visit) {
+    if (!visit.restores()) {
+      run_.persist(visit.in("run"));
+      scene_text_ = to_toml(scene_with_copies());
+    }
+    StateVisitor here = visit.in("record");
+    std::int64_t dimension = Dim;
+    here("dimension", dimension);
+    here("scene", scene_text_);
+    samples_.persist(here, "samples");
+    frames_.persist(here, "frames");
+    here("frame_count", frame_count_);
+    here("last_frame", last_frame_);
+    here("last_sample", last_sample_);
+    largest_.persist(here.in("largest"));
+    double spent = seconds_spent();
+    here("seconds", spent);
+    spent_before_ = visit.restores() ? spent : spent_before_;
+    for (auto& format : formats_) format->persist(run_, here.in("csv"), frame_count_);
   }
 
   bool run() {
-    write_what_is_due();
+    if (last_sample_ < 0) write_what_is_due();
+    write_checkpoint();
     bool stopped = false;
     try {
       while (!run_.finished() && !stopped) {
@@ -92,6 +133,7 @@ class Recorder {
         run_.step(steps_at_once());
         write_what_is_due();
         stopped = options_.stop && options_.stop();
+        if (checkpoint_is_due()) write_checkpoint();
       }
     } catch (const SimulationError& error) {
       fs::path kept;
@@ -100,27 +142,38 @@ class Recorder {
       throw SimulationError(std::string(error.what()) + "; the state at t = " +
                             shortest(last_good_.time) + " s is kept in " + kept.string());
     }
+    // A run that is resumed later shall not see the frame that ends this one.
+    if (stopped) write_checkpoint();
     if (run_.steps() != last_frame_) write_frame();
     if (run_.steps() != last_sample_) write_sample();
+    if (!stopped) write_checkpoint();
     write_summary(stopped ? "stopped by the user" : "finished", true);
     return !stopped;
+  }
+
+  /// Writes the scene, with copies of the files that it reads: it stays what was run, whatever
+  /// becomes of them. All are read first, because a copy may take the place of one.
+  void write_scene() const {
+    const Scene<Dim> scene = scene_with_copies();
+    std::vector<std::string> texts;
+    for (const auto& grains : run_.scene().grain_files) texts.push_back(read_file(grains.file));
+    for (std::size_t k = 0; k < texts.size(); ++k) {
+      write_file(options_.folder / scene.grain_files[k].file, texts[k]);
+    }
+    write_file(options_.folder / "scene.toml", to_toml(scene));
   }
 
  private:
   using Clock = std::chrono::steady_clock;
   static constexpr std::int64_t kStepsBetweenCopies = 64;  // of the state, in case all goes wrong
 
-  /// Writes the scene, with copies of the files that it reads: it stays what was run, whatever
-  /// becomes of them. All are read first, because a copy may take the place of one.
-  void write_scene() const {
+  /// The scene that reads these copies.
+  Scene<Dim> scene_with_copies() const {
     Scene<Dim> scene = run_.scene();
-    std::vector<std::string> texts;
-    for (const GrainFile<Dim>& grains : scene.grain_files) texts.push_back(read_file(grains.file));
-    for (std::size_t k = 0; k < texts.size(); ++k) {
+    for (std::size_t k = 0; k < scene.grain_files.size(); ++k) {
       scene.grain_files[k].file = "grains_" + std::to_string(k + 1) + ".csv";
-      write_file(options_.folder / scene.grain_files[k].file, texts[k]);
     }
-    write_file(options_.folder / "scene.toml", to_toml(scene));
+    return scene;
   }
 
   static double or_else(double value, double otherwise) { return value > 0 ? value : otherwise; }
@@ -188,7 +241,7 @@ class Recorder {
     } else {
       line("steps", std::to_string(run_.steps()));
     }
-    const double spent = seconds_since(begun_);
+    const double spent = seconds_spent();
     line("wall-clock time", rounded(spent) + " s, " +
                                 rounded(100 * run_.neighbourhood_seconds() / spent) +
                                 " % of it for the neighbourhood");
@@ -201,14 +254,37 @@ class Recorder {
     if (now - shown_ < std::chrono::milliseconds(200) && !run_.finished()) return;
     shown_ = now;
     Progress p;
-    p.fraction = static_cast<double>(run_.steps()) / static_cast<double>(run_.steps_planned());
+    p.fraction = fraction();
     p.time = run_.time();
     const ContactStatistics s = run_.statistics();
     p.contacts = s.contacts + s.wall_contacts;
-    p.seconds_left = p.fraction > 0 ? seconds_since(begun_) / p.fraction * (1 - p.fraction) : 0;
+    const double done = p.fraction - begun_at_;
+    p.seconds_left = done > 0 ? seconds_since(begun_) / done * (1 - p.fraction) : 0;
     options_.progress(p);
   }
 
+  // ---- Checkpoints ------------------------------------------------------------------------------
+
+  bool checkpoint_is_due() const {
+    constexpr double kShare = 50;  // of the time, at most the inverse goes into checkpoints
+    return seconds_since(checkpoint_at_) >
+           std::max(options_.checkpoint_every, kShare * checkpoint_took_);
+  }
+  void write_checkpoint() {
+    const auto begin = Clock::now();
+    State state;
+    persist(StateVisitor::keeping(state));
+    for (auto& format : formats_) format->sync_to_disk();
+    lagrain::write_checkpoint(options_.folder, state);
+    checkpoint_at_ = Clock::now();
+    checkpoint_took_ = seconds_since(begin);
+  }
+
+  /// Of the steps that are made [-].
+  double fraction() const {
+    return static_cast<double>(run_.steps()) / static_cast<double>(run_.steps_planned());
+  }
+  double seconds_spent() const { return spent_before_ + seconds_since(begun_); }
   static double seconds_since(Clock::time_point then) {
     return std::chrono::duration<double>(Clock::now() - then).count();
   }
@@ -222,8 +298,13 @@ class Recorder {
   std::int64_t last_sample_ = -1;  // step
   Frame<Dim> last_good_;
   Largest largest_;
+  std::string scene_text_;        // in the folder
+  double begun_at_ = fraction();  // [-]
+  double spent_before_ = 0;       // by those that it goes on for [s]
+  double checkpoint_took_ = 0;    // the last one [s]
   Clock::time_point begun_ = Clock::now();
   Clock::time_point shown_{};
+  Clock::time_point checkpoint_at_ = Clock::now();
 };
 
 }  // namespace
@@ -232,10 +313,66 @@ const char* version() { return LAGRAIN_VERSION; }
 
 template <int Dim>
 bool record(Run<Dim>& run, const RecordOptions& options) {
-  return Recorder<Dim>(run, options).run();
+  Recorder<Dim> recorder(run, options);
+  recorder.begin();
+  return recorder.run();
+}
+
+int checkpoint_dimension(const Checkpoint& checkpoint) {
+  int dimension = 0;
+  try {
+    StateVisitor::restoring(checkpoint.state).in("record")("dimension", dimension);
+  } catch (const SceneError& error) {
+    throw SceneError(checkpoint.file.string() + ": " + error.what());
+  }
+  return dimension;
+}
+
+template <int Dim>
+std::unique_ptr<Run<Dim>> resume_run(const Checkpoint& checkpoint, std::optional<double> until,
+                                     int threads) {
+  const std::string name = checkpoint.file.string();
+  Scene<Dim> scene = parse_scene<Dim>(checkpoint.state.get<std::string>("record/scene"), name);
+  for (GrainFile<Dim>& grains : scene.grain_files) {
+    grains.file = checkpoint.file.parent_path() / grains.file;
+  }
+  if (until) {
+    // Rows of the series stay as close to each other as they were.
+    OutputPlan& output = scene.output;
+    if (!(output.series_every > 0)) output.series_every = scene.duration / 1000;
+    scene.duration = *until;
+  }
+  auto run = make_run(scene, threads);
+  try {
+    run->persist(StateVisitor::restoring(checkpoint.state).in("run"));
+  } catch (const SceneError& error) {
+    throw SceneError(name + ": " + error.what());
+  }
+  if (until && run->time() > *until) {
+    throw SceneError(name + ": the run has gone on to " + shortest(run->time()) +
+                     " s, further than the " + shortest(*until) + " s that were asked for");
+  }
+  return run;
+}
+
+template <int Dim>
+bool record_on(Run<Dim>& run, const Checkpoint& checkpoint, RecordOptions options) {
+  options.folder = checkpoint.file.parent_path();
+  Recorder<Dim> recorder(run, options);
+  try {
+    recorder.persist(StateVisitor::restoring(checkpoint.state));
+  } catch (const SceneError& error) {
+    throw SceneError(checkpoint.file.string() + ": " + error.what());
+  }
+  recorder.write_scene();
+  return recorder.run();
 }
 
 template bool record<2>(Run<2>&, const RecordOptions&);
 template bool record<3>(Run<3>&, const RecordOptions&);
+template std::unique_ptr<Run<2>> resume_run<2>(const Checkpoint&, std::optional<double>, int);
+template std::unique_ptr<Run<3>> resume_run<3>(const Checkpoint&, std::optional<double>, int);
+template bool record_on<2>(Run<2>&, const Checkpoint&, RecordOptions);
+template bool record_on<3>(Run<3>&, const Checkpoint&, RecordOptions);
 
 }  // namespace lagrain

@@ -47,6 +47,26 @@ void Run<Dim>::started() {
 }
 
 template <int Dim>
+void Run<Dim>::persist(StateVisitor visit) {
+  persist_simulation(visit);
+  visit("materials", materials_);
+  visit("groups", groups_);
+  std::vector<int> pinned(groups_.size());
+  for (std::size_t i = 0; i < pinned.size(); ++i) pinned[i] = pinned_[static_cast<int>(i)];
+  visit("pinned", pinned);
+  start_.persist(visit.in("start"));
+  audit_.persist(visit.in("audit"));
+  if (traffic_) traffic_->persist(visit.in("traffic"));
+  if (!visit.restores()) return;
+  const auto n = static_cast<std::size_t>(count());
+  if (materials_.size() != n || groups_.size() != n || pinned.size() != n) {
+    throw SceneError("its grains do not fit together");
+  }
+  pinned_ =
+      PinnedGrains(count(), [&](int i) { return pinned[static_cast<std::size_t>(i)] ? 0 : 1; });
+}
+
+template <int Dim>
 void Run<Dim>::step(std::int64_t count) {
   constexpr int kLook = detail::Traffic<Dim>::kStepsBetweenLooks;
   while (count > 0) {

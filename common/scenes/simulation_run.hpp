@@ -93,6 +93,7 @@ class SimulationRun final : public Run<Dim> {
 
  private:
   void advance(std::int64_t count) override { sim_.step(count); }
+  void persist_simulation(StateVisitor visit) override { sim_.persist(visit); }
   void exchange(const std::vector<int>& leavers,
                 const std::vector<Grain<Dim>>& newcomers) override {
     sim_.exchange(leavers, make_grains<Dim, Law::needs>(newcomers));

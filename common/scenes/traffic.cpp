@@ -49,6 +49,38 @@ typename Traffic<Dim>::Change Traffic<Dim>::look(const Run<Dim>& run) {
 }
 
 template <int Dim>
+void Traffic<Dim>::persist(StateVisitor visit) {
+  for (std::size_t k = 0; k < sources_.size(); ++k) {
+    StateVisitor inlet = visit.in("inlets").in(std::to_string(k));
+    Source& source = sources_[k];
+    source.random.persist(inlet);
+    double next_radius = source.next_radius.value_or(0);
+    inlet("next_radius", next_radius);
+    source.next_radius = next_radius > 0 ? std::optional(next_radius) : std::nullopt;
+    inlet("grains", counts_.inlets[k].grains);
+    inlet("waiting", counts_.inlets[k].waiting);
+    inlet("longest_wait", counts_.inlets[k].longest_wait);
+  }
+  for (std::size_t k = 0; k < counts_.outlets.size(); ++k) {
+    StateVisitor outlet = visit.in("outlets").in(std::to_string(k));
+    outlet("grains", counts_.outlets[k].grains);
+    outlet("mass", counts_.outlets[k].mass);
+  }
+  visit("lost", counts_.lost);
+  std::vector<int> ids;
+  std::vector<double> times;
+  for (const TrafficCounts::Lost& lost : counts_.first_lost) {
+    ids.push_back(lost.id);
+    times.push_back(lost.time);
+  }
+  visit("lost_ids", ids);
+  visit("lost_times", times);
+  if (ids.size() != times.size()) throw SceneError("its lost grains do not fit together");
+  counts_.first_lost.clear();
+  for (std::size_t k = 0; k < ids.size(); ++k) counts_.first_lost.push_back({ids[k], times[k]});
+}
+
+template <int Dim>
 bool Traffic<Dim>::leaves(const Run<Dim>& run, int number) {
   if (run.pinned()[number]) return false;
   const Vec<Dim> x = run.positions().col(number);

@@ -10,6 +10,7 @@
 #include <lagrain/random.hpp>
 #include <lagrain/run.hpp>
 #include <lagrain/scene.hpp>
+#include <lagrain/state.hpp>
 
 #include <cstdint>
 #include <optional>
@@ -44,6 +45,9 @@ class Traffic {
   Change look(const Run<Dim>& run);
 
   const TrafficCounts& counts() const { return counts_; }  ///< so far
+
+  /// Keeps or restores who has come and left, and the random numbers of those who will come.
+  void persist(StateVisitor visit);
 
  private:
   struct Source {

@@ -242,7 +242,7 @@ TEST_SUITE("program") {
 
     CHECK(Place::exit_code(child) == 130);
     CHECK(place.err().substr(0, 24) == "lagrain: stopped at t = ");
-    CHECK(holds(place.err(), "what was computed is in result\n"));
+    CHECK(holds(place.err(), "what was computed is in result (to go on: lagrain resume result)\n"));
     CHECK(fs::exists(place / "result/frames/0001.csv"));
     CHECK(fs::exists(place / "result/series.csv"));
     CHECK(holds(content(place / "result/summary.txt"), "stopped by the user"));
@@ -278,6 +278,38 @@ TEST_SUITE("program") {
           content(place / ("result/frames/" + std::string(4 - name.size(), '0') + name + ".csv"));
       CHECK(std::count(text.begin(), text.end(), '\n') == 1 + 14);
     }
+  }
+
+  TEST_CASE("a run that is killed is resumed to the bits of one that was left alone") {
+    const Place place;
+    place.write("heap.toml", with(kOnTriangulation, "\"20 ms\"", "\"60 ms\"") +
+                                 "[output]\nframes_every = \"5 ms\"\n");
+    REQUIRE(place.run({"run", "heap.toml", "--out", "whole"}) == 0);
+    for (int milliseconds = 30; milliseconds < 400; milliseconds += 70) {
+      const pid_t child =
+          fs::exists(place / "parted/checkpoint.h5")
+              ? place.start({"resume", "parted", "--checkpoint-every", "0 s"})
+              : place.start({"run", "heap.toml", "--out", "parted", "--checkpoint-every", "0 s"});
+      std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+      kill(child, SIGKILL);
+      waitpid(child, nullptr, 0);
+    }
+    REQUIRE(place.run({"resume", "parted", "--threads", "2"}) == 0);
+    int frames = 0;
+    for (const auto& entry : fs::directory_iterator(place / "whole/frames")) {
+      ++frames;
+      CHECK(content(entry.path()) ==
+            content(place / ("parted/frames/" + entry.path().filename().string())));
+    }
+    CHECK(frames == 13);
+    CHECK(content(place / "whole/frames.csv") == content(place / "parted/frames.csv"));
+
+    CHECK(place.run({"resume", "parted"}) == 0);
+    CHECK(place.out() == "parted is at its end, t = 0.06 s; to go further: --until\n");
+    CHECK(place.run({"resume", "parted", "--until", "70 ms"}) == 0);
+    CHECK(place.run({"resume", "parted", "--until", "70 kg"}) == 2);
+    CHECK(place.run({"resume", "nowhere"}) == 2);
+    CHECK(holds(place.err(), "nowhere: there is no checkpoint (checkpoint.h5) in this folder"));
   }
 
   TEST_CASE("--explain says what the scene is made of, and runs and writes nothing") {

@@ -3,6 +3,7 @@
 /// @file
 /// Reading a file; files that are there whole or not at all, and files that grow.
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -22,18 +23,28 @@ void write_file(const std::filesystem::path& file, std::string_view text);
 /// @throws SceneError if not
 void make_folder(const std::filesystem::path& folder);
 
+/// Waits until a file, or the entries of a folder, lie on the disk: a computer that fails from now
+/// on keeps them.
+/// @throws SceneError if that is not possible
+void sync_to_disk(const std::filesystem::path& file);
+
 /// A file that rows are added to. What has been added stays, however the program ends.
 class GrowingFile {
  public:
-  /// Begins an empty file.
+  /// Begins an empty file, or goes on with one that exists.
+  /// @param length  what is kept of it [bytes]; what follows is cut off
   /// @throws SceneError if that is not possible
-  explicit GrowingFile(std::filesystem::path file);
+  explicit GrowingFile(std::filesystem::path file, std::uintmax_t length = 0);
   /// @throws SceneError if the text cannot be written
   void add(std::string_view text);
+  std::uintmax_t length() const { return length_; }  ///< [bytes]
+  /// See lagrain::sync_to_disk.
+  void sync_to_disk() const { lagrain::sync_to_disk(file_); }
 
  private:
   std::filesystem::path file_;
   std::ofstream out_;
+  std::uintmax_t length_;
 };
 
 }  // namespace lagrain

@@ -6,6 +6,7 @@
 
 #include <lagrain/files.hpp>
 #include <lagrain/frame.hpp>
+#include <lagrain/state.hpp>
 
 #include <cstdint>
 #include <filesystem>
@@ -23,6 +24,11 @@ class RunFormat {
   /// Called once, before anything else: removes what an earlier run left of this format.
   /// @throws SceneError here and below if a file cannot be written
   virtual void begin(const Run<Dim>& run) = 0;
+  /// Waits until everything lies on the disk.
+  virtual void sync_to_disk() const = 0;
+  /// Keeps how far it has written; or goes on from there, instead of `begin`, and removes what was
+  /// written later.
+  virtual void persist(const Run<Dim>& run, StateVisitor visit, std::int64_t frames) = 0;
   /// Adds a row to the series.
   virtual void add_sample(const Sample& sample) = 0;
   /// Writes frame `number`; the run stands where the frame was taken.
@@ -40,11 +46,16 @@ class CsvFormat final : public RunFormat<Dim> {
   explicit CsvFormat(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   void begin(const Run<Dim>& run) override;
+  void sync_to_disk() const override;
+  void persist(const Run<Dim>& run, StateVisitor visit, std::int64_t frames) override;
   void add_sample(const Sample& sample) override;
   void add_frame(const Run<Dim>& run, const Frame<Dim>& frame, std::int64_t number) override;
   std::filesystem::path write_last(const Run<Dim>& run, const Frame<Dim>& frame) override;
 
  private:
+  void make_folders(const Run<Dim>& run) const;
+  void remove_frames(std::int64_t first) const;
+
   std::filesystem::path folder_;
   std::optional<GrowingFile> series_, frames_;
 };

@@ -9,12 +9,15 @@
 ///     frames.csv       number, step and time of each frame
 ///     frames/NNNN.csv  the grains; contacts/NNNN.csv beside it if the scene asks for contacts
 ///     summary.txt      what the run was and how far it can be trusted
+///     checkpoint.h5    the state at the end, or as it was not long before a sudden one; and
+///                      checkpoint_before.h5, the one before (checkpoint.hpp)
 ///     last.csv         only after an error: the last good state
 ///
 /// The first line of a CSV file is name[unit]. Numbers read back bit for bit. series.csv and
 /// frames.csv grow row by row, and what has been written stays, however the program ends; every
 /// other file is written whole or not at all.
 
+#include <lagrain/checkpoint.hpp>
 #include <lagrain/files.hpp>
 #include <lagrain/format.hpp>
 #include <lagrain/numbers.hpp>
@@ -22,6 +25,8 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 
 namespace lagrain {
@@ -42,6 +47,9 @@ struct RecordOptions {
   std::filesystem::path folder;                   ///< made if it is not there
   std::function<bool()> stop;                     ///< asked after every step
   std::function<void(const Progress&)> progress;  ///< told a few times a second
+  /// Wall-clock time from one checkpoint to the next, unless to write one takes longer than a
+  /// fiftieth of it [s].
+  double checkpoint_every = 60;
 };
 
 /// Runs to the scene's duration and writes the folder. Frames of an earlier run are removed from
@@ -51,5 +59,25 @@ struct RecordOptions {
 /// @throws SimulationError as Run::step, after writing what was computed and last.csv
 template <int Dim>
 bool record(Run<Dim>& run, const RecordOptions& options);
+
+/// The dimension of the run that a checkpoint is of.
+/// @throws SceneError if it holds no run
+int checkpoint_dimension(const Checkpoint& checkpoint);
+
+/// Makes a run again, as it was at its checkpoint.
+/// @param until    the new end [s]; none: the scene's own
+/// @param threads  as for make_run
+/// @throws SceneError if the checkpoint holds no such run, or the new end has passed
+template <int Dim>
+std::unique_ptr<Run<Dim>> resume_run(const Checkpoint& checkpoint, std::optional<double> until = {},
+                                     int threads = 0);
+
+/// Goes on recording in the folder of the checkpoint, with the run that was made from it. What had
+/// been written there later is written anew, so that series and frames are those of a run that was
+/// left alone, bit for bit. (Columns near_pairs and refreshes tell of the search
+/// and may differ; losses are summed in its order, and may differ in their last digits.)
+/// @return see record
+template <int Dim>
+bool record_on(Run<Dim>& run, const Checkpoint& checkpoint, RecordOptions options);
 
 }  // namespace lagrain

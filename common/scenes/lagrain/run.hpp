@@ -9,6 +9,7 @@
 #include <lagrain/pinned_grains.hpp>
 #include <lagrain/placement.hpp>
 #include <lagrain/scene.hpp>
+#include <lagrain/state.hpp>
 #include <lagrain/time_step.hpp>
 
 #include <cstddef>
@@ -113,6 +114,11 @@ class Run {
   virtual double neighbourhood_seconds() const = 0;
   virtual ModelSize size() const = 0;  ///< of the model that was chosen
 
+  /// Keeps all that the run needs to go on with the same bits, or restores it into a run that was
+  /// made from the same scene.
+  /// @throws SceneError if the state is not that of such a run, which is of no use then
+  void persist(StateVisitor visit);
+
   /// Threads that share the steps from now on; results do not depend on it.
   /// @throws ContractError if there are none
   virtual void use_threads(int threads) = 0;
@@ -140,6 +146,8 @@ class Run {
 
  private:
   virtual void advance(std::int64_t count) = 0;
+  /// See GrainSystem::persist.
+  virtual void persist_simulation(StateVisitor visit) = 0;
   /// See Simulation::exchange.
   virtual void exchange(const std::vector<int>& leavers,
                         const std::vector<Grain<Dim>>& newcomers) = 0;
