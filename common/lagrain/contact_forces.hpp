@@ -74,8 +74,8 @@ class ContactForces {
   /// The loads of the grains of block b, from its first slot on; good until the thread is at
   /// another block.
   /// @pre the forces of all pairs across blocks are kept
-  const Load* detect_and_apply_law(Scene scene, List& near, std::size_t b, std::size_t thread,
-                                   const GrainStore<Dim, needs>& store, const Vec<Dim>& gravity) {
+  Load* detect_and_apply_law(Scene scene, List& near, std::size_t b, std::size_t thread,
+                             const GrainStore<Dim, needs>& store, const Vec<Dim>& gravity) {
     auto& block = near.blocks()[b];
     BlockSums& sums = sums_[b];
     std::vector<Load>& loads = loads_[thread];

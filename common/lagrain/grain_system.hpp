@@ -4,6 +4,7 @@
 /// Grains, walls and the contacts between them: what a simulation is made of and shows, whatever
 /// moves it on.
 
+#include <lagrain/body_force.hpp>
 #include <lagrain/check.hpp>
 #include <lagrain/contact_forces.hpp>
 #include <lagrain/contact_law.hpp>
@@ -58,6 +59,11 @@ class GrainSystem {
   /// Energy put in and taken out since the start.
   const EnergyFlow& flow() const { return flow_; }
 
+  /// The body forces that act, and the work of each.
+  const auto& body_forces() const { return body_forces_.works(); }
+  /// What the others exert on all driven grains together, as it was evaluated last.
+  const DrivenLoad<Dim>& driven() const { return driven_load_; }
+
   /// The listed pairs, sorted: they hold every contact while near_list_holds().
   std::vector<Pair> near_pairs() const {
     std::vector<Pair> pairs;
@@ -101,6 +107,9 @@ class GrainSystem {
     for (std::size_t w = 0; w < walls_.size(); ++w) {
       walls_[w].persist(visit.in("walls").in(std::to_string(w)));
     }
+    visit("gravity", setting_.gravity);
+    body_forces_.persist(visit.in("forces"));
+    driven_load_.persist(visit.in("driven"));
     store_.persist(visit.in("grains"));
     near_.persist(visit.in("memory"), count(), block_size());
     if (visit.restores()) go_on();
@@ -179,12 +188,14 @@ class GrainSystem {
         laws_(std::move(laws)),
         walls_(std::move(walls)),
         setting_(std::move(setting)),
+        first_gravity_(setting_.gravity),
         neighbourhood_(std::move(neighbourhood)),
         forces_(setting_.instructions, store_.materials().empty()) {
     use_threads(setting_.threads);
     expect_sound_walls(walls_);
     join_walls(walls_);
     for (Wall<Dim>& wall : walls_) wall.advance(0, 0);
+    setting_.gravity = gravity_at(setting_.gravity_course, first_gravity_, 0);
     near_.reset(count(), block_size());
     watch_ = PassageWatch<Dim>(walls_, 0);
     meet_grains();
@@ -219,6 +230,43 @@ class GrainSystem {
       }
       walls_[w].advance(t, dt);
     }
+  }
+
+  /// From the next evaluation on gravity is g [m/s^2], and steady.
+  void set_gravity_to(const Vec<Dim>& g) {
+    setting_.gravity_course = SteadyGravity{};
+    first_gravity_ = g;
+    moment_ = moment_of_mass();
+  }
+
+  /// Brings gravity to time t [s], at which the grains are. Who changes it does work. As far as its
+  /// kinetic energy goes, velocity Verlet moves a grain from x to x' by the mean of the forces
+  /// before and after (but for dt^2 m (a'^2 - a^2) / 8, which does not add up). With the potential
+  /// -g . sum m x this leaves the work -(g' - g) . sum m (x + x') / 2.
+  void advance_gravity(double t) {
+    const Vec<Dim> now = gravity_at(setting_.gravity_course, first_gravity_, t);
+    if (is_steady(setting_.gravity_course) && now == setting_.gravity) return;
+    const Vec<Dim> moment = moment_of_mass();
+    flow_.gravity_work -= 0.5 * (now - setting_.gravity).dot(moment_ + moment);
+    setting_.gravity = now;
+    moment_ = moment;
+  }
+
+  /// The power and the load of the driven grains of a block, from their loads.
+  DrivenLoad<Dim> driven_in(int first_slot, int end_slot, const Load* loads) const {
+    DrivenLoad<Dim> sum;
+    const auto begin = std::lower_bound(driven_.begin(), driven_.end(), first_slot);
+    for (auto slot = begin; slot != driven_.end() && *slot < end_slot; ++slot) {
+      const Record& grain = store_.record(*slot);
+      const Load& load = loads[*slot - first_slot];
+      sum.power -= load.force().dot(grain.velocity());
+      sum.force += load.force() - load.at[Load::kMass] * setting_.gravity;
+      if constexpr (needs.spin) {
+        sum.power -= load.torque().dot(grain.omega());
+        sum.torque += load.torque();
+      }
+    }
+    return sum;
   }
 
   /// Marks for grains and walls.
@@ -260,6 +308,7 @@ class GrainSystem {
     }
     update_triangulation(time());
 
+    if (!is_steady(setting_.gravity_course)) moment_ = moment_of_mass();
     std::vector<bool> is_new(kept.size(), false);
     is_new.resize(index(count()), true);
     changed.grains.resize(index(count()), true);
@@ -300,7 +349,13 @@ class GrainSystem {
   LawTable<Law> laws_;
   std::vector<Wall<Dim>> walls_;
   Setting<Dim> setting_;
+  Vec<Dim> first_gravity_;              // before anything has changed it
+  Vec<Dim> moment_ = Vec<Dim>::Zero();  // sum m x, as gravity was looked at last
   N neighbourhood_;
+  BodyForces<Dim, needs> body_forces_;
+  std::vector<int> driven_;  // slots of the grains that are driven
+  DrivenLoad<Dim> driven_load_;
+  std::vector<DrivenLoad<Dim>> driven_in_blocks_;
   ContactForces<Dim, Law> forces_;
   NearList<Dim, Memory> near_;
   EnergyFlow flow_;
@@ -327,6 +382,15 @@ class GrainSystem {
     return static_cast<std::size_t>(i);
   }
 
+  /// sum m x [kg m], in the order of the slots.
+  Vec<Dim> moment_of_mass() const {
+    Vec<Dim> moment = Vec<Dim>::Zero();
+    for (int slot = 0; slot < count(); ++slot) {
+      moment += store_.load(slot).at[Load::kMass] * store_.record(slot).position();
+    }
+    return moment;
+  }
+
   static Body<Dim, needs> body(const Grains<Dim, needs>& g, int i) {
     Body<Dim, needs> b{g.position.col(i), g.velocity.col(i), g.radius[i], g.inverse_mass[i], {}};
     if constexpr (needs.spin) b.omega = g.omega.col(i);
@@ -340,6 +404,7 @@ class GrainSystem {
     watch_ = PassageWatch<Dim>(walls_, time());
     meet_grains();
     if constexpr (requires { neighbourhood_.forget(); }) neighbourhood_.forget();
+    moment_ = moment_of_mass();
     update_triangulation(time());
   }
 
@@ -373,6 +438,13 @@ class GrainSystem {
   void meet_grains() {
     near_.pin(PinnedGrains(count(),
                            [&](int slot) { return store_.record(slot).at[Record::kInverseMass]; }));
+    driven_.clear();
+    for (int slot = 0; slot < count(); ++slot) {
+      const Record& grain = store_.record(slot);
+      bool moves = !grain.velocity().isZero(0);
+      if constexpr (needs.spin) moves = moves || !grain.omega().isZero(0);
+      if (moves && !(grain.at[Record::kInverseMass] > 0)) driven_.push_back(slot);
+    }
     strays_.assign(near_.blocks().size(), {});
     // A run that may overlap without a limit may pass through things as well.
     if (std::isfinite(setting_.largest_overlap) && count() > 0) {

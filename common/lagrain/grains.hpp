@@ -22,7 +22,7 @@ template <int Dim>
 struct SpinState {
   Columns<kSpinDim<Dim>> omega;     ///< angular velocity [rad/s], counter-clockwise positive
   Columns<kSpinDim<Dim>> torque;    ///< [N m]
-  Eigen::VectorXd inverse_inertia;  ///< [1/(kg m^2)], 0 for a pinned grain
+  Eigen::VectorXd inverse_inertia;  ///< [1/(kg m^2)], 0 for a pinned or driven one
 };
 
 /// What stands in place of SpinState where nothing spins.
@@ -31,7 +31,8 @@ struct NoSpin {};
 /// N discs (Dim = 2) or spheres (Dim = 3), as they are given to a simulation and as it shows them.
 /// A frictionless `Grains` has no member `omega`: it is absent, not zero.
 ///
-/// A pinned grain has inverse mass and inverse inertia 0: forces on it are measured, it stays.
+/// A pinned or driven grain has inverse mass and inverse inertia 0: forces on it are measured, and
+/// it stays, or keeps its velocity and spin.
 template <int Dim, Needs needs>
 struct Grains : std::conditional_t<needs.spin, SpinState<Dim>, NoSpin> {
   Columns<Dim> position;               ///< Dim x N [m]
@@ -39,7 +40,7 @@ struct Grains : std::conditional_t<needs.spin, SpinState<Dim>, NoSpin> {
   Columns<Dim> force;                  ///< Dim x N [N]
   Eigen::VectorXd radius;              ///< N [m], positive
   Eigen::VectorXd mass;                ///< N [kg], positive
-  Eigen::VectorXd inverse_mass;        ///< N [1/kg], 0 for a pinned grain
+  Eigen::VectorXd inverse_mass;        ///< N [1/kg], 0 for a pinned or driven grain
   std::vector<std::uint8_t> material;  ///< N: row of the table of laws; empty if all are 0
 
   int size() const { return static_cast<int>(radius.size()); }  ///< N
@@ -55,6 +56,9 @@ struct Grain {
   double mass = 0;                            ///< [kg]
   int material = 0;                           ///< row of the table of laws
   bool pinned = false;                        ///< stays where it is, whatever pushes it
+  bool driven = false;                        ///< keeps its velocity and spin, whatever pushes it
+
+  bool held() const { return pinned || driven; }  ///< no force moves it
 };
 
 /// Volume [m^3] of a disc of the given depth [m] (Dim = 2: a rod) or of a sphere (depth unused).
@@ -117,17 +121,18 @@ Grains<Dim, needs> make_grains(const std::vector<Grain<Dim>>& list) {
         name + "position, velocity or spin is not a number");
     LAGRAIN_EXPECTS(grain.material >= 0 && grain.material <= 255,
                     name + "material " + std::to_string(grain.material));
-    LAGRAIN_EXPECTS(!grain.pinned || (grain.velocity.isZero(0) && grain.omega.isZero(0)),
-                    name + "pinned, but moving");
+    LAGRAIN_EXPECTS(
+        !grain.pinned || (!grain.driven && grain.velocity.isZero(0) && grain.omega.isZero(0)),
+        name + "pinned, but moving");
     grains.position.col(i) = grain.position;
     grains.velocity.col(i) = grain.velocity;
     grains.radius[i] = grain.radius;
     grains.mass[i] = grain.mass;
-    grains.inverse_mass[i] = grain.pinned ? 0 : 1 / grain.mass;
+    grains.inverse_mass[i] = grain.held() ? 0 : 1 / grain.mass;
     if constexpr (needs.spin) {
       grains.omega.col(i) = grain.omega;
       grains.inverse_inertia[i] =
-          grain.pinned ? 0 : 1 / grain_inertia<Dim>(grain.mass, grain.radius);
+          grain.held() ? 0 : 1 / grain_inertia<Dim>(grain.mass, grain.radius);
     }
     one_material = one_material && grain.material == 0;
   }

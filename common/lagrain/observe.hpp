@@ -20,17 +20,21 @@ namespace lagrain {
 
 /// Where the energy is, and where it went [J].
 struct Ledger {
-  double kinetic = 0;    ///< of translation and rotation
-  double gravity = 0;    ///< -sum m g.x, up to a constant
-  double elastic = 0;    ///< in the springs of all contacts
-  double wall_work = 0;  ///< put in by moving walls
-  double dashpot = 0;    ///< taken by normal dashpots
-  double friction = 0;   ///< taken by friction
-  double carried = 0;    ///< brought by grains that came, less what grains took along that left
+  double kinetic = 0;       ///< of translation and rotation
+  double gravity = 0;       ///< -sum m g.x, up to a constant
+  double elastic = 0;       ///< in the springs of all contacts
+  double wall_work = 0;     ///< put in by moving walls
+  double dashpot = 0;       ///< taken by normal dashpots
+  double friction = 0;      ///< taken by friction
+  double carried = 0;       ///< brought by grains that came, less what grains took along that left
+  double gravity_work = 0;  ///< put in by whoever changes gravity
+  double driven_work = 0;   ///< put in by driven grains
+  double force_work = 0;    ///< put in by body forces; taken by drag: negative
 
   /// What is in the system or has left it; constant in exact arithmetic with an exact integrator.
   double balance() const {
-    return kinetic + gravity + elastic + dashpot + friction - wall_work - carried;
+    return kinetic + gravity + elastic + dashpot + friction - wall_work - carried - gravity_work -
+           driven_work - force_work;
   }
 
   /// Keeps or restores it.
@@ -42,6 +46,9 @@ struct Ledger {
     visit("dashpot", dashpot);
     visit("friction", friction);
     visit("carried", carried);
+    visit("gravity_work", gravity_work);
+    visit("driven_work", driven_work);
+    visit("force_work", force_work);
   }
 };
 
@@ -89,6 +96,9 @@ Ledger energy_ledger(const Simulation<Dim, Law, Motion, N>& sim) {
   ledger.dashpot = sim.flow().dashpot;
   ledger.friction = sim.flow().friction;
   ledger.carried = sim.flow().carried;
+  ledger.gravity_work = sim.flow().gravity_work;
+  ledger.driven_work = sim.flow().driven_work;
+  for (const auto& force : sim.body_forces()) ledger.force_work += force.work;
   return ledger;
 }
 

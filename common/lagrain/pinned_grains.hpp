@@ -10,13 +10,14 @@
 
 namespace lagrain {
 
-/// Which grains stay where they are, whatever pushes them. Two things that cannot move exert
-/// nothing on each other: their pair is no contact, holds no energy and need not be listed.
+/// Which grains stay where they are, or move as they are driven, whatever pushes them. Two things
+/// that no force moves exert nothing on each other: their pair is no contact, holds no energy and
+/// need not be listed.
 class PinnedGrains {
  public:
   PinnedGrains() = default;  ///< all grains can move
   /// @param count         number of grains
-  /// @param inverse_mass  inverse_mass(i) [1/kg], 0 for a pinned grain
+  /// @param inverse_mass  inverse_mass(i) [1/kg], 0 for a pinned or driven grain
   template <class F>
   PinnedGrains(int count, F&& inverse_mass) {
     for (int i = 0; i < count; ++i) {
@@ -26,9 +27,9 @@ class PinnedGrains {
     }
   }
 
-  /// Whether grain i is pinned.
+  /// Whether no force moves grain i.
   bool operator[](int i) const { return !pinned_.empty() && pinned_[static_cast<std::size_t>(i)]; }
-  /// Whether both grains of a pair are pinned.
+  /// Whether no force moves either grain of a pair.
   bool both(const Pair& pair) const { return (*this)[pair.i] && (*this)[pair.j]; }
   /// Takes the pairs out of a list that can be no contact.
   void drop_from(std::vector<Pair>& pairs) const {

@@ -5,6 +5,7 @@
 /// `PhaseTimes` are what it counts.
 
 #include <lagrain/contact_kernel.hpp>
+#include <lagrain/gravity.hpp>
 #include <lagrain/state.hpp>
 #include <lagrain/vec.hpp>
 
@@ -13,21 +14,24 @@ namespace lagrain {
 /// What is the same for all grains.
 template <int Dim>
 struct Setting {
-  Vec<Dim> gravity = Vec<Dim>::Zero();  ///< [m/s^2]
+  Vec<Dim> gravity = Vec<Dim>::Zero();  ///< at the start, and of a simulation now [m/s^2]
   double time_step = 0;                 ///< [s]
   /// Of the smaller radius; beyond it, and where something passes through something within a step,
   /// the run stops. Infinite: it never does [-].
   double largest_overlap = kLargestOverlap;
   int threads = 1;  ///< that share a step; results do not depend on it
   InstructionSet instructions = instruction_sets().back();  ///< nor on this
+  GravityCourse<Dim> gravity_course = SteadyGravity{};      ///< how gravity changes
 };
 
 /// Energy that has come and gone since the start [J].
 struct EnergyFlow {
-  double wall_work = 0;  ///< by moving walls on the grains
-  double dashpot = 0;    ///< taken by normal dashpots
-  double friction = 0;   ///< taken by friction
-  double carried = 0;    ///< by grains that came, less that of grains that left
+  double wall_work = 0;     ///< by moving walls on the grains
+  double dashpot = 0;       ///< taken by normal dashpots
+  double friction = 0;      ///< taken by friction
+  double carried = 0;       ///< by grains that came, less that of grains that left
+  double gravity_work = 0;  ///< by whoever changes gravity, on the grains in it
+  double driven_work = 0;   ///< by driven grains on the others
 
   /// Keeps or restores it.
   void persist(StateVisitor visit) {
@@ -35,6 +39,30 @@ struct EnergyFlow {
     visit("dashpot", dashpot);
     visit("friction", friction);
     visit("carried", carried);
+    visit("gravity_work", gravity_work);
+    visit("driven_work", driven_work);
+  }
+};
+
+/// What the others exert on the driven grains, all together, and what these do to them.
+template <int Dim>
+struct DrivenLoad {
+  Vec<Dim> force = Vec<Dim>::Zero();           ///< without weights [N]
+  SpinVec<Dim> torque = SpinVec<Dim>::Zero();  ///< about the centre of each [N m]
+  double power = 0;                            ///< that driving them takes [W]
+
+  /// Of several parts, in their order.
+  DrivenLoad& operator+=(const DrivenLoad& other) {
+    force += other.force;
+    torque += other.torque;
+    power += other.power;
+    return *this;
+  }
+  /// Keeps or restores it.
+  void persist(StateVisitor visit) {
+    visit("force", force);
+    visit("torque", torque);
+    visit("power", power);
   }
 };
 

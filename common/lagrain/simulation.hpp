@@ -61,6 +61,7 @@ class Simulation : public GrainSystem<Dim, Law, N> {
     expect_known_materials(store_.by_number(), laws_, walls_);
     expect_safe_step(setting_.time_step, time_scales(store_.by_number(), laws_, walls_));
     expect_integrable<Motion>(laws_, walls_);
+    if (!is_steady(setting_.gravity_course)) expect_no_change("gravity may change");
     update_triangulation(0);  // step 1: there is none yet
     force_step_ = 0;          // memories and energies do not advance
     evaluate_forces(0, {});
@@ -96,6 +97,24 @@ class Simulation : public GrainSystem<Dim, Law, N> {
     }
   }
 
+  /// Gravity is g [m/s^2] from now on, and steady. The energy that this brings is in flow().
+  /// @throws ContractError if the integrator is for conservative scenes
+  void set_gravity(const Vec<Dim>& g) {
+    expect_no_change("gravity may change");
+    this->set_gravity_to(g);
+  }
+
+  /// Another force acts on every grain from now on, besides weight and contacts. It is added before
+  /// the first step, or between two: there it acts from the next half step on.
+  /// @param name  in the list of works
+  /// @throws ContractError if the integrator is for conservative scenes
+  template <BodyForce<Dim> F>
+  void add_force(std::string name, F force) {
+    expect_no_change("body forces may act");
+    body_forces_.add(std::move(name), std::move(force), store_, this->time());
+    store_.outdate();
+  }
+
   /// Between two steps, grains leave and others come. The others keep their ids, their order, the
   /// forces on them and what their contacts remember. Only where a leaver touched them, or a
   /// newcomer does, are forces evaluated anew. The energy that comes and goes is in flow().
@@ -105,8 +124,7 @@ class Simulation : public GrainSystem<Dim, Law, N> {
   ///         newcomers, their material is unknown, or the integrator is for conservative scenes;
   ///         nothing has changed then
   void exchange(const std::vector<int>& leavers, const Grains<Dim, needs>& newcomers) {
-    LAGRAIN_EXPECTS(!Motion::kConservativeOnly,
-                    std::string(Motion::kName) + " integrates conservative scenes: none may leave");
+    expect_no_change("grains may leave");
     std::vector<int> kept;
     auto leaver = leavers.begin();
     for (int i = 0; i < this->count(); ++i) {
@@ -124,7 +142,7 @@ class Simulation : public GrainSystem<Dim, Law, N> {
                        time_scales(joined(store_.by_number(), kept, newcomers), laws_, walls_));
     }
     const auto changed = exchange_grains(kept, newcomers);
-    find_forces(0, [&](std::size_t b, const Load* loads) {
+    find_forces(0, this->time(), [&](std::size_t b, const Load* loads) {
       const auto& block = near_.blocks()[b];
       for (int slot = block.first_slot; slot < block.end_slot; ++slot) {
         if (!changed.grains[static_cast<std::size_t>(store_.number(slot))]) continue;
@@ -143,6 +161,7 @@ class Simulation : public GrainSystem<Dim, Law, N> {
  private:
   using System::advance_walls, System::exchange_grains, System::expect_no_passage,
       System::for_each_block, System::sort_grains, System::update_triangulation;
+  using System::body_forces_, System::driven_, System::driven_in_blocks_, System::driven_load_;
   using System::flow_, System::force_step_, System::forces_, System::laws_, System::measuring_,
       System::near_, System::setting_, System::steps_, System::store_, System::strays_,
       System::times_, System::walls_, System::watch_;
@@ -167,8 +186,9 @@ class Simulation : public GrainSystem<Dim, Law, N> {
   /// Steps 2 and 3 of the paper: forces where the grains are. f(block, loads of its grains) goes on
   /// with a block once its own are known: nobody else reads its places then.
   /// @param time_step  by which memories and losses advance [s]
+  /// @param t          time [s]
   template <class F>
-  void find_forces(double time_step, F&& f) {
+  void find_forces(double time_step, double t, F&& f) {
     const ContactScene<Dim, Law> scene{
         store_.records().data(), nullptr,   &store_.materials(),     &laws_,
         walls_.data(),           time_step, setting_.largest_overlap};
@@ -177,15 +197,38 @@ class Simulation : public GrainSystem<Dim, Law, N> {
       for_each_block(
           [&](std::size_t b, std::size_t) { forces_.keep_pairs_across(scene, near_, b); });
     }
+    const std::size_t blocks = near_.blocks().size();
+    body_forces_.begin(blocks);
+    driven_in_blocks_.resize(driven_.empty() ? 0 : blocks);
     for_each_block([&](std::size_t b, std::size_t thread) {
-      f(b, forces_.detect_and_apply_law(scene, near_, b, thread, store_, setting_.gravity));
+      Load* loads = forces_.detect_and_apply_law(scene, near_, b, thread, store_, setting_.gravity);
+      const auto& block = near_.blocks()[b];
+      if (!body_forces_.empty()) {
+        body_forces_.add_to(loads, &store_.record(block.first_slot),
+                            block.end_slot - block.first_slot, b, t);
+      }
+      if (!driven_.empty()) {
+        driven_in_blocks_[b] = this->driven_in(block.first_slot, block.end_slot, loads);
+      }
+      f(b, loads);
     });
+    body_forces_.end(time_step);
+    const double power = driven_load_.power;
+    driven_load_ = {};
+    for (const auto& part : driven_in_blocks_) driven_load_ += part;
+    flow_.driven_work += 0.5 * time_step * (power + driven_load_.power);
+  }
+
+  static void expect_no_change(const char* change) {
+    LAGRAIN_EXPECTS(!Motion::kConservativeOnly,
+                    std::string(Motion::kName) + " integrates conservative scenes: no " + change);
   }
 
   /// Steps 2 to 4 of the paper, where the grains are at time t [s].
   void evaluate_forces(double t, const Then& then) {
+    this->advance_gravity(t);
     move_seconds_.assign(near_.blocks().size(), 0);
-    find_forces(force_step_, [&](std::size_t b, const Load* loads) {
+    find_forces(force_step_, t, [&](std::size_t b, const Load* loads) {
       const Stopwatch watch(measuring_);
       update_trajectories(b, loads, t, then);
       move_seconds_[b] = watch.seconds();

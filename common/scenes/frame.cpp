@@ -25,6 +25,18 @@ std::vector<SeriesColumn> series_columns(const Run<Dim>& run) {
   const auto add = [&](const std::string& stem, const char* unit) {
     for (int d = 0; d < Dim; ++d) columns.push_back({stem + "xyz"[d], unit});
   };
+  const auto add_spin = [&](const std::string& stem, const char* unit) {
+    for (int d = 0; d < kSpinDim<Dim>; ++d) {
+      columns.push_back({stem + (Dim == 2 ? "" : std::string(1, "xyz"[d])), unit});
+    }
+  };
+  if (!is_steady(run.scene().gravity_course)) columns.push_back({"gravity_work", "J"});
+  if (run.scene().drag) columns.push_back({"drag_work", "J"});
+  if (run.drives()) {
+    columns.push_back({"driven_work", "J"});
+    add("driven.f", "N");
+    if (run.spins() != nullptr) add_spin("driven.torque", "N m");
+  }
   if (run.traffic() != nullptr) {
     columns.push_back({"carried", "J"});
     columns.push_back({"grains", "-"});
@@ -40,10 +52,7 @@ std::vector<SeriesColumn> series_columns(const Run<Dim>& run) {
     if (wall.moves()) add(wall.name + ".", "m");
     if (wall.turns()) {
       columns.push_back({wall.name + ".angle", "rad"});
-      for (int d = 0; d < kSpinDim<Dim>; ++d) {
-        columns.push_back(
-            {wall.name + ".torque" + (Dim == 2 ? "" : std::string(1, "xyz"[d])), "N m"});
-      }
+      add_spin(wall.name + ".torque", "N m");
     }
     if (wall.turns() || wall.runs()) columns.push_back({wall.name + ".work", "J"});
   }
@@ -61,6 +70,14 @@ Sample sample_of(const Run<Dim>& run, const Ledger& now, const ContactStatistics
              s.coordination,    s.mean_overlap,
              s.largest_overlap, static_cast<std::int64_t>(run.near_pairs().size()),
              run.refreshes()};
+  const auto add = [&](const auto& v) { row.insert(row.end(), v.begin(), v.end()); };
+  if (!is_steady(run.scene().gravity_course)) row.emplace_back(now.gravity_work);
+  if (run.scene().drag) row.emplace_back(now.force_work);
+  if (run.drives()) {
+    row.emplace_back(now.driven_work);
+    add(run.driven().force);
+    if (run.spins() != nullptr) add(run.driven().torque);
+  }
   if (const TrafficCounts* traffic = run.traffic()) {
     row.emplace_back(now.carried);
     row.emplace_back(std::int64_t{run.count()});
@@ -71,13 +88,12 @@ Sample sample_of(const Run<Dim>& run, const Ledger& now, const ContactStatistics
     }
     if (run.scene().domain) row.emplace_back(traffic->lost);
   }
-  const auto add = [&](const Vec<Dim>& v) { row.insert(row.end(), v.begin(), v.end()); };
   for (const Wall<Dim>& wall : run.walls()) {
     add(wall.force);
     if (wall.moves()) add(wall.point);
     if (wall.turns()) {
       row.push_back(wall.angle);
-      row.insert(row.end(), wall.torque.begin(), wall.torque.end());
+      add(wall.torque);
     }
     if (wall.turns() || wall.runs()) row.push_back(wall.work);
   }

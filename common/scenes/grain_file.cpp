@@ -276,6 +276,7 @@ class Reader {
     if (spinning_) read(spin_, grain.spin);
     grain.material = material();
     grain.pinned = asked_.pinned;
+    grain.driven = asked_.driven;
     return grain;
   }
 

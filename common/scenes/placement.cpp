@@ -183,7 +183,7 @@ class Placer {
                                 " %); largest_initial_overlap allows more");
     };
     for (const Wall<Dim>& wall : walls_) {
-      if (p.pinned && !wall.yields()) continue;  // neither can move
+      if (p.held() && !wall.yields()) continue;  // no force moves either
       const double distance = wall.foot(p.position).distance;
       if (distance < 0) throw refusal(index, "lies behind wall \"" + wall.name + "\"");
       const double overlap = (p.radius - distance) / p.radius;
@@ -193,7 +193,7 @@ class Placer {
       const Grain<Dim>& other = placed_.grains[static_cast<std::size_t>(j)];
       const double overlap = (p.radius + other.radius - (p.position - other.position).norm()) /
                              std::min(p.radius, other.radius);
-      if (overlap > limit && !(p.pinned && other.pinned)) {
+      if (overlap > limit && !(p.held() && other.held())) {
         throw overlaps(name_of(static_cast<std::size_t>(j)), overlap);
       }
       return true;
@@ -204,6 +204,7 @@ class Placer {
     grain.omega = p.spin;
     grain.radius = p.radius;
     grain.pinned = p.pinned;
+    grain.driven = p.driven;
     grain.material = p.material;
     grain.mass = scene_.materials[static_cast<std::size_t>(p.material)].density *
                  grain_volume<Dim>(p.radius, scene_.depth);
@@ -378,8 +379,12 @@ class Placer {
       const bool near = ((grain.position - f.low).array() > -grain.radius).all() &&
                         ((f.high - grain.position).array() > -grain.radius).all();
       if (!near) continue;
+      grain.driven = false;
       grain.pinned = !shares_region(i, f);
-      if (grain.pinned) grain.velocity.setZero(), grain.omega.setZero();
+      if (grain.pinned) {
+        grain.velocity.setZero();
+        grain.omega.setZero();
+      }
       chosen.push_back(i);
       grains.push_back(grain);
     }

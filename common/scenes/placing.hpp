@@ -113,7 +113,11 @@ Grain<Dim> grain_from(const Scene<Dim>& scene, const Source& source, double radi
   if (source.random_speed > 0) {
     grain.velocity += source.random_speed * random_direction<Dim>(random);
   }
-  if constexpr (requires { source.pinned; }) grain.pinned = source.pinned;
+  if constexpr (requires { source.pinned; }) {
+    grain.omega = source.spin;
+    grain.pinned = source.pinned;
+    grain.driven = source.driven;
+  }
   return grain;
 }
 

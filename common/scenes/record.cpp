@@ -72,8 +72,9 @@ struct Largest {
   void look_at(const Ledger& now, const Ledger& start, const ContactStatistics& statistics) {
     overlap = std::max(overlap, statistics.largest_overlap);
     residual = std::max(residual, std::abs(lagrain::residual(now, start)));
-    for (const double e : {now.kinetic, now.gravity - start.gravity, now.elastic, now.wall_work,
-                           now.dashpot, now.friction, now.carried}) {
+    for (const double e :
+         {now.kinetic, now.gravity - start.gravity, now.elastic, now.wall_work, now.dashpot,
+          now.friction, now.carried, now.gravity_work, now.driven_work, now.force_work}) {
       energy = std::max(energy, std::abs(e));
     }
   }

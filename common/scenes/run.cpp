@@ -22,8 +22,11 @@ Run<Dim>::Run(Scene<Dim> scene, Placement<Dim> placement)
     : scene_(std::move(scene)),
       groups_(std::move(placement.group)),
       pinned_(static_cast<int>(placement.grains.size()),
-              [&](int i) { return placement.grains[static_cast<std::size_t>(i)].pinned ? 0 : 1; }) {
-  for (const Grain<Dim>& grain : placement.grains) materials_.push_back(grain.material);
+              [&](int i) { return placement.grains[static_cast<std::size_t>(i)].held() ? 0 : 1; }) {
+  for (const Grain<Dim>& grain : placement.grains) {
+    materials_.push_back(grain.material);
+    drives_ = drives_ || grain.driven;
+  }
   if (!scene_.inlets.empty() || !scene_.outlets.empty() || scene_.domain) {
     traffic_ = std::make_unique<detail::Traffic<Dim>>(scene_);
   }
@@ -100,7 +103,7 @@ void Run<Dim>::look_after_traffic() {
   groups_.resize(pinned.size());
   for (const Grain<Dim>& grain : change.newcomers) {
     materials_.push_back(grain.material);
-    pinned.push_back(grain.pinned);
+    pinned.push_back(grain.held());
   }
   groups_.insert(groups_.end(), change.groups.begin(), change.groups.end());
   pinned_ =
@@ -208,7 +211,9 @@ std::string explain(const Run<Dim>& run) {
                           std::string(description_of(scene.friction).in_words));
   line("integrator", std::string(name_of(scene.integrator)));
   line("neighbourhood", std::string(name_of(scene.neighbourhood)));
-  line("grains", std::to_string(run.count()));
+  if (!is_steady(scene.gravity_course)) line("gravity", "changes in time");
+  if (scene.drag) line("drag", "linear in the velocity");
+  line("grains", std::to_string(run.count()) + (run.drives() ? ", some of them driven" : ""));
   line("walls", std::to_string(run.walls().size()));
   for (const Inlet<Dim>& inlet : scene.inlets) {
     line("inlet", "\"" + inlet.name + "\", " + shortest(inlet.rate) + " grains a second, " +
@@ -283,6 +288,11 @@ std::vector<std::pair<std::string, std::string>> facts(const Run<Dim>& run) {
   fact("largest overlap", rounded(100 * s.largest_overlap) + " % of the smaller radius");
   fact("kinetic energy", rounded(now.kinetic) + " J");
   fact("energy residual", rounded(residual(now, run.start())) + " J");
+  if (!is_steady(run.scene().gravity_course)) {
+    fact("work of gravity", rounded(now.gravity_work) + " J, by whoever changes it");
+  }
+  if (run.scene().drag) fact("work of the drag", rounded(now.force_work) + " J");
+  if (run.drives()) fact("work of driven grains", rounded(now.driven_work) + " J");
   if (run.traffic() != nullptr) {
     fact("energy carried", rounded(now.carried) + " J, in with grains less out with grains");
     const TrafficCounts& traffic = *run.traffic();

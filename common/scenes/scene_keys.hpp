@@ -33,6 +33,7 @@ inline constexpr Measure kSpeed{"a speed", {1, 0, -1}};
 inline constexpr Measure kAcceleration{"an acceleration", {1, 0, -2}};
 inline constexpr Measure kForce{"a force", {1, 1, -2}};
 inline constexpr Measure kDensity{"a density", {-3, 1, 0}};
+inline constexpr Measure kViscosityMeasure{"a viscosity", {-1, 1, -1}};
 
 /// A key of a table, and which numbers it accepts if it holds numbers.
 struct Key {
@@ -49,6 +50,8 @@ inline constexpr Key kSeed{"seed"};
 inline constexpr Key kDuration{"duration", kTime, Range::positive};
 inline constexpr Key kTimeStep{"time_step", kTime, Range::positive};
 inline constexpr Key kGravity{"gravity", kAcceleration};
+inline constexpr Key kGravityValue{"value", kAcceleration};
+inline constexpr Key kGravityValues{"values", kAcceleration};
 inline constexpr Key kDepth{"depth", kLength, Range::positive};
 inline constexpr Key kNormalLaw{"normal"};
 inline constexpr Key kFrictionLaw{"friction"};
@@ -62,6 +65,7 @@ inline constexpr Key kAuditEvery{"audit_every"};
 
 inline constexpr Key kLaw{"law"};
 inline constexpr Key kPair{"pair"};
+inline constexpr Key kDrag{"drag"};
 inline constexpr Key kMaterials{"materials"};
 inline constexpr Key kFill{"fill"};
 inline constexpr Key kGrain{"grain"};
@@ -75,6 +79,9 @@ inline constexpr Key kMeasure{"measure"};
 inline constexpr Key kOutput{"output"};
 
 inline constexpr Key kBetween{"between"};
+
+inline constexpr Key kViscosity{"viscosity", kViscosityMeasure, Range::not_negative};
+inline constexpr Key kDragRate{"rate", detail::kRate, Range::not_negative};
 
 inline constexpr Key kMaterialDensity{"density", kDensity, Range::positive};
 
@@ -99,6 +106,7 @@ inline constexpr Key kRate{"rate", detail::kRate, Range::positive};
 
 inline constexpr Key kPosition{"position", kLength};
 inline constexpr Key kPinned{"pinned"};
+inline constexpr Key kDriven{"driven"};
 inline constexpr Key kSpin{"spin", kAngularVelocity};
 
 inline constexpr Key kFile{"file"};

@@ -215,6 +215,7 @@ class Reader {
   Scene<Dim> read() {
     scene_.file = file_.name;
     read_top();
+    read_drag();
     read_materials();
     read_laws();
     top_.for_each(keys::kFill, [&](TomlTable& s, int) { read_fill(s); });
@@ -246,7 +247,7 @@ class Reader {
         top_.integer(keys::kSeed, 0, static_cast<std::int64_t>(scene_.seed)));
     scene_.duration = top_.number(keys::kDuration);
     scene_.time_step = read_time_step(top_);
-    scene_.gravity = top_.vector<Dim>(keys::kGravity);
+    read_gravity();
     if (Dim == 2) {
       scene_.depth = top_.number(keys::kDepth, scene_.depth);
     } else {
@@ -256,6 +257,7 @@ class Reader {
     scene_.friction = law_word<FrictionModel>(top_, keys::kFrictionLaw, kFrictionLaws);
     scene_.integrator =
         top_.word<IntegratorModel>(keys::kIntegrator, detail::kIntegratorWords, scene_.integrator);
+    if (!is_steady(scene_.gravity_course)) expect_no_fourth_order("gravity changes");
     scene_.neighbourhood = top_.word<NeighbourhoodModel>(
         keys::kNeighbourhood, detail::kNeighbourhoodWords, scene_.neighbourhood);
     scene_.largest_overlap = top_.number(keys::kLargestOverlap, scene_.largest_overlap);
@@ -267,6 +269,54 @@ class Reader {
     } else {
       top_.refuse(keys::kAuditEvery, "nothing is audited; add audit = true or remove this line");
     }
+  }
+
+  void read_gravity() {
+    if (!top_.holds_table(keys::kGravity)) {
+      scene_.gravity = top_.vector<Dim>(keys::kGravity);
+      return;
+    }
+    TomlTable s = top_.table(keys::kGravity);
+    if (s.has(keys::kTimes)) {
+      const GravityTable<Dim> table{s.numbers(keys::kTimes), s.vectors<Dim>(keys::kGravityValues)};
+      if (table.times.empty() || table.times.size() != table.gravity.size()) {
+        s.fail(keys::kGravityValues, "expected one for each of the times");
+      }
+      for (std::size_t k = 1; k < table.times.size(); ++k) {
+        if (table.times[k] < table.times[k - 1] ||
+            (k > 1 && table.times[k] == table.times[k - 2])) {
+          s.fail(keys::kTimes, "expected rising times, of which two may be equal: a switch");
+        }
+      }
+      scene_.gravity_course = table;
+      scene_.gravity = gravity_at(scene_.gravity_course, Vec<Dim>(Vec<Dim>::Zero()), 0);
+    } else {
+      scene_.gravity = s.vector<Dim>(keys::kGravityValue);
+      TurningGravity<Dim> turning{read_axis(s), s.number(keys::kTurningRate)};
+      read_times(s, turning);
+      scene_.gravity_course = turning;
+    }
+    s.finish();
+  }
+
+  void read_drag() {
+    if (!top_.has(keys::kDrag)) return;
+    TomlTable s = top_.table(keys::kDrag);
+    Drag<Dim> drag;
+    if (Dim == 2) {
+      s.refuse(keys::kViscosity, "Stokes' law is of spheres; in the plane give a rate");
+    } else {
+      drag.viscosity = s.number(keys::kViscosity, drag.viscosity);
+    }
+    drag.rate = s.number(keys::kDragRate, drag.rate);
+    if (s.has(keys::kVelocity)) drag.flow = s.vector<Dim>(keys::kVelocity);
+    if (!(drag.viscosity > 0 || drag.rate > 0)) {
+      s.missing(keys::kDragRate, Dim == 2 ? "how fast velocities decay [1/s]"
+                                          : "how fast velocities decay [1/s], or a viscosity");
+    }
+    s.finish();
+    expect_no_fourth_order("drag takes energy");
+    scene_.drag = drag;
   }
 
   void read_materials() {
@@ -359,12 +409,14 @@ class Reader {
     const Region<Dim> region = read_region(s);
     fill.low = region.low;
     fill.high = region.high;
-    fill.pinned = s.flag(keys::kPinned, fill.pinned);
+    read_held(s, fill);
     if (fill.pinned) {
       s.refuse(keys::kVelocity, "pinned grains stay; remove this line");
+      s.refuse(keys::kSpin, "pinned grains stay; remove this line");
     } else {
       read_velocity(s, fill);
     }
+    read_spin(s, fill.spin);
     scene_.fills.push_back(std::move(fill));
   }
 
@@ -394,6 +446,29 @@ class Reader {
       s.fail(keys::kHigh, "expected low below high in every direction");
     }
     return region;
+  }
+
+  /// Of grains that may be held: pinned or driven.
+  template <class Source>
+  void read_held(TomlTable& s, Source& source) {
+    source.pinned = s.flag(keys::kPinned, source.pinned);
+    source.driven = s.flag(keys::kDriven, source.driven);
+    if (source.pinned && source.driven) {
+      s.fail(keys::kDriven, "what is driven moves, and what is pinned stays; choose one");
+    }
+    if (source.driven) expect_no_fourth_order("grains are driven");
+  }
+
+  void read_spin(TomlTable& s, SpinVec<Dim>& spin) {
+    if (scene_.friction == FrictionModel::none) {
+      s.refuse(keys::kSpin, "nothing spins in a scene with friction = \"none\"; remove this line");
+    } else if (s.has(keys::kSpin)) {
+      if constexpr (Dim == 2) {
+        spin[0] = s.number(keys::kSpin);
+      } else {
+        spin = s.vector<Dim>(keys::kSpin);
+      }
+    }
   }
 
   /// Of a fill or an inlet.
@@ -476,7 +551,8 @@ class Reader {
   void expect_no_fourth_order(const std::string& what) {
     if (scene_.integrator != IntegratorModel::fourth_order) return;
     top_.fail(keys::kIntegrator,
-              "\"fourth order\" keeps all grains, but here " + what + "; choose another one");
+              "\"fourth order\" is for grains that stay and keep their energy, but here " + what +
+                  "; choose another one");
   }
 
   void read_grain(TomlTable& s) {
@@ -484,21 +560,13 @@ class Reader {
     grain.position = s.vector<Dim>(keys::kPosition);
     grain.radius = s.number(keys::kRadius);
     grain.material = material_of(s, true);
-    grain.pinned = s.flag(keys::kPinned, grain.pinned);
+    read_held(s, grain);
     if (grain.pinned) {
       s.refuse(keys::kVelocity, "a pinned grain stays; remove this line");
       s.refuse(keys::kSpin, "a pinned grain stays; remove this line");
     }
     if (s.has(keys::kVelocity)) grain.velocity = s.vector<Dim>(keys::kVelocity);
-    if (scene_.friction == FrictionModel::none) {
-      s.refuse(keys::kSpin, "nothing spins in a scene with friction = \"none\"; remove this line");
-    } else if (s.has(keys::kSpin)) {
-      if constexpr (Dim == 2) {
-        grain.spin[0] = s.number(keys::kSpin);
-      } else {
-        grain.spin = s.vector<Dim>(keys::kSpin);
-      }
-    }
+    read_spin(s, grain.spin);
     scene_.grains.push_back(grain);
   }
 
@@ -511,7 +579,7 @@ class Reader {
     if (s.has(keys::kMaterial)) grains.material = material_of(s, true);
     if (s.has(keys::kShift)) grains.shift = s.vector<Dim>(keys::kShift);
     grains.at_rest = s.flag(keys::kAtRest, grains.at_rest);
-    grains.pinned = s.flag(keys::kPinned, grains.pinned);
+    read_held(s, grains);
     scene_.grain_files.push_back(std::move(grains));
   }
 
@@ -906,14 +974,7 @@ class Reader {
 
   void read_turning(TomlTable s, Wall<Dim>& wall) {
     const auto type = s.word<detail::TurningType>(keys::kType, detail::kTurningWords);
-    SpinVec<Dim> axis = SpinVec<Dim>::Ones();
-    if constexpr (Dim == 2) {
-      s.refuse(keys::kAxis, "in the plane all turns about the same; remove this line");
-    } else {
-      axis = s.vector<3>(keys::kAxis);
-      if (!is_direction(axis)) s.expected(keys::kAxis, "a direction");
-      if (!is_unit(axis)) axis.normalize();
-    }
+    const SpinVec<Dim> axis = read_axis(s);
     const Vec<Dim> about = s.has(keys::kAbout) ? s.vector<Dim>(keys::kAbout) : wall.home;
     if (type == detail::TurningType::steady) {
       Turn<Dim> turn{axis, s.number(keys::kTurningRate), about};
@@ -925,6 +986,19 @@ class Reader {
       wall.turning = swing;
     }
     s.finish();
+  }
+
+  /// What something turns about.
+  static SpinVec<Dim> read_axis(TomlTable& s) {
+    SpinVec<Dim> axis = SpinVec<Dim>::Ones();
+    if constexpr (Dim == 2) {
+      s.refuse(keys::kAxis, "in the plane all turns about the same; remove this line");
+    } else {
+      axis = s.vector<3>(keys::kAxis);
+      if (!is_direction(axis)) s.expected(keys::kAxis, "a direction");
+      if (!is_unit(axis)) axis.normalize();
+    }
+    return axis;
   }
 
   template <class Motion>

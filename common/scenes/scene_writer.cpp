@@ -113,6 +113,7 @@ class Writer {
 
   std::string write() {
     write_top();
+    write_drag();
     out_.table("[" + std::string(keys::kLaw.name) + "]");
     write_law(scene_.law);
     for (const Material& m : scene_.materials) {
@@ -157,7 +158,7 @@ class Writer {
       out_.as_it_is(keys::kTimeStep,
                     "\"" + in_toml(scene_.time_step.fraction_of_contact) + " contact\"");
     }
-    out_.add(keys::kGravity, scene_.gravity);
+    write_gravity();
     if (Dim == 2) out_.add(keys::kDepth, scene_.depth);
     out_.add(keys::kNormalLaw, description_of(scene_.normal).word);
     out_.add(keys::kFrictionLaw, description_of(scene_.friction).word);
@@ -167,6 +168,35 @@ class Writer {
     out_.add(keys::kLargestInitialOverlap, scene_.largest_initial_overlap);
     out_.add(keys::kAudit, scene_.audit);
     if (scene_.audit) out_.add(keys::kAuditEvery, scene_.audit_every);
+  }
+
+  void write_gravity() {
+    std::visit(Overloaded{[&](const SteadyGravity&) { out_.add(keys::kGravity, scene_.gravity); },
+                          [&](const TurningGravity<Dim>& turning) {
+                            Inline gravity;
+                            gravity.add(keys::kGravityValue, scene_.gravity);
+                            if constexpr (Dim == 3) gravity.add(keys::kAxis, turning.axis);
+                            gravity.add(keys::kTurningRate, turning.rate);
+                            gravity.add(keys::kStart, turning.start);
+                            if (std::isfinite(turning.stop)) gravity.add(keys::kStop, turning.stop);
+                            out_.as_it_is(keys::kGravity, gravity.text());
+                          },
+                          [&](const GravityTable<Dim>& table) {
+                            out_.as_it_is(keys::kGravity,
+                                          Inline{}
+                                              .add(keys::kTimes, table.times)
+                                              .add(keys::kGravityValues, table.gravity)
+                                              .text());
+                          }},
+               scene_.gravity_course);
+  }
+
+  void write_drag() {
+    if (!scene_.drag) return;
+    out_.table("[" + std::string(keys::kDrag.name) + "]");
+    if (Dim == 3) out_.add(keys::kViscosity, scene_.drag->viscosity);
+    out_.add(keys::kDragRate, scene_.drag->rate);
+    out_.add(keys::kVelocity, scene_.drag->flow);
   }
 
   void write_law(const LawNumbers& law) {
@@ -188,9 +218,11 @@ class Writer {
     out_.add(keys::kArrangement, text_of(detail::kArrangementWords, fill.arrangement));
     if (fill.pinned) {
       out_.add(keys::kPinned, true);
-    } else {
-      write_velocity(fill);
+      return;
     }
+    write_velocity(fill);
+    write_spin(fill.spin);
+    if (fill.driven) out_.add(keys::kDriven, true);
   }
 
   void write_inlet(const Inlet<Dim>& inlet) {
@@ -267,11 +299,16 @@ class Writer {
       return;
     }
     out_.add(keys::kVelocity, grain.velocity);
+    write_spin(grain.spin);
+    if (grain.driven) out_.add(keys::kDriven, true);
+  }
+
+  void write_spin(const SpinVec<Dim>& spin) {
     if (scene_.friction == FrictionModel::none) return;
     if constexpr (Dim == 2) {
-      out_.add(keys::kSpin, grain.spin[0]);
+      out_.add(keys::kSpin, spin[0]);
     } else {
-      out_.add(keys::kSpin, grain.spin);
+      out_.add(keys::kSpin, spin);
     }
   }
 
@@ -282,6 +319,7 @@ class Writer {
     out_.add(keys::kShift, grains.shift);
     out_.add(keys::kAtRest, grains.at_rest);
     out_.add(keys::kPinned, grains.pinned);
+    if (grains.driven) out_.add(keys::kDriven, true);
   }
 
   void write_wall(const Wall<Dim>& wall) {

@@ -29,8 +29,13 @@ class SimulationRun final : public Run<Dim> {
       : Run<Dim>(scene, std::move(placement)),
         scales_(scales),
         sim_(std::move(grains), std::move(laws), std::move(walls),
-             {scene.gravity, scene.time_step.seconds, scene.largest_overlap},
+             {.gravity = scene.gravity,
+              .time_step = scene.time_step.seconds,
+              .largest_overlap = scene.largest_overlap,
+              .gravity_course = scene.gravity_course},
              std::move(neighbourhood)) {
+    // The reader has refused drag for integrators of conservative scenes.
+    if (scene.drag) sim_.add_force("drag", *scene.drag);
     this->started();
   }
 
@@ -47,6 +52,7 @@ class SimulationRun final : public Run<Dim> {
   const Eigen::VectorXd& masses() const override { return sim_.masses(); }
   const std::vector<int>& ids() const override { return sim_.ids(); }
   const std::vector<Wall<Dim>>& walls() const override { return sim_.walls(); }
+  const DrivenLoad<Dim>& driven() const override { return sim_.driven(); }
   ContactStatistics statistics() const override { return contact_statistics(sim_); }
   Ledger ledger() const override { return energy_ledger(sim_); }
   std::vector<Pair> near_pairs() const override { return sim_.near_pairs(); }
@@ -104,6 +110,24 @@ class SimulationRun final : public Run<Dim> {
   Sim sim_;
 };
 
+/// A drag takes a part of a velocity in a step; more than all of it is none.
+/// @param grains  at the start; those of inlets count as well
+/// @throws SceneError that names the step that would do
+template <int Dim>
+void expect_slow_drag(const Scene<Dim>& scene, const std::vector<Grain<Dim>>& grains) {
+  if (!scene.drag) return;
+  double fastest = 0;  // [1/s]
+  for (const Grain<Dim>& grain : grains) {
+    if (grain.held()) continue;
+    fastest = std::max(fastest, scene.drag->coefficient(grain.radius, grain.mass) / grain.mass);
+  }
+  if (scene.time_step.seconds * fastest <= 1) return;
+  throw scene.error("time_step", rounded(scene.time_step.seconds) +
+                                     " s is too large for the drag, which stops a grain in " +
+                                     rounded(1 / fastest) + " s; give a step of at most that, or " +
+                                     "less drag");
+}
+
 /// The last part of make_run: law and grains as types.
 template <int Dim, class Normal, template <class> class Friction>
 std::unique_ptr<Run<Dim>> make_run_of(const Scene<Dim>& scene, Placement<Dim> placement,
@@ -134,6 +158,8 @@ std::unique_ptr<Run<Dim>> make_run_of(const Scene<Dim>& scene, Placement<Dim> pl
                           " s and allows at most " + shortest(scales.safe_step) + " s (\"" +
                           rounded(0.999 * scales.safe_step / scales.contact) + " contact\")");
   }
+
+  expect_slow_drag(resolved, all);
 
   const auto finish = [&]<class Motion>(Motion) -> std::unique_ptr<Run<Dim>> {
     return std::make_unique<SimulationRun<Dim, Law, Motion>>(

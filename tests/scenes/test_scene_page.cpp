@@ -179,6 +179,11 @@ high = [1, 1]
   const auto moving = [&](const std::string& motion) {
     return with(plain, plane, plane + "[wall.motion]\n" + motion);
   };
+  const auto changing = [](const std::string& scene, const std::string& steady,
+                           const std::string& gravity) {
+    return with(with(scene, "gravity = " + steady + "\n", ""), "[law]",
+                "[gravity]\n" + gravity + "[law]");
+  };
   const auto in_space_with = [&](const std::string& shape) {
     return with(in_space<3>(plain), "point = [0, 0, 0]\nnormal = [0, 0, 1]\n", shape);
   };
@@ -186,6 +191,13 @@ high = [1, 1]
   return {
       plain,
       with(plain, "[law]", "audit = true\n[law]"),
+      with(plain, "[law]", "[drag]\nrate = 1\n[law]"),
+      in_space<3>(with(plain, "[law]", "[drag]\nrate = 1\n[law]")),
+      in_space<3>(with(plain, "[law]", "[drag]\nviscosity = 1\n[law]")),
+      changing(plain, "[0, -9.81]", "value = [0, -9.81]\nrate = 1\n"),
+      changing(in_space<3>(plain), "[0, 0, -9.81]",
+               "value = [0, 0, -9.81]\naxis = [0, 0, 1]\nrate = 1\n"),
+      changing(plain, "[0, -9.81]", "times = [0, 1, 1]\nvalues = [[0, -9], [0, -9], [9, 0]]\n"),
       with(plain, "\"elastic\"", "\"viscous\""),
       without(with(plain, "\"elastic\"", "\"none\""), "friction = 0.4"),
       with(with(plain, "\"linear\"", "\"hertz\""), "stiffness = 1e6",
@@ -303,7 +315,7 @@ TEST_SUITE("scene page") {
     const Page page = read_page();
     const std::set<std::string> keys = all_keys();
     REQUIRE(keys.size() > 50);
-    REQUIRE(page.tables.size() == 21);
+    REQUIRE(page.tables.size() == 23);
     std::set<std::string> explained;
     for (const auto& table : page.tables) {
       const std::string& path = table.first;

@@ -176,8 +176,8 @@ TEST_SUITE("grains that come and leave, in scenes") {
     smooth = with(with(smooth, "restitution = 0.7", "restitution = 1"), "friction = 0.3\n", "");
     CHECK(
         message_of<3>(smooth) ==
-        "s.toml:6: integrator: \"fourth order\" keeps all grains, but here grains come in; choose "
-        "another one");
+        "s.toml:6: integrator: \"fourth order\" is for grains that stay and keep their energy, but "
+        "here grains come in; choose another one");
     const auto unknown = message_with("rate = 100", "rate = 100\nrates = 5");
     CHECK(unknown.find("did you mean \"rate\"?") != std::string::npos);
   }

@@ -103,8 +103,10 @@ class Run {
   virtual const Eigen::VectorXd& masses() const = 0;  ///< N [kg]
   /// What a grain keeps while others come and leave; empty while grain i has the id i.
   virtual const std::vector<int>& ids() const = 0;
-  virtual const std::vector<Wall<Dim>>& walls() const = 0;         ///< as they are now
-  virtual std::vector<ContactRecord<Dim>> contacts() const = 0;    ///< grains first, in order
+  virtual const std::vector<Wall<Dim>>& walls() const = 0;       ///< as they are now
+  virtual std::vector<ContactRecord<Dim>> contacts() const = 0;  ///< grains first, in order
+  /// What the others exert on all driven grains together.
+  virtual const DrivenLoad<Dim>& driven() const = 0;
   virtual ContactStatistics statistics() const = 0;                ///< of the contacts now
   virtual Ledger ledger() const = 0;                               ///< where the energy is now
   virtual std::vector<Pair> near_pairs() const = 0;                ///< sorted
@@ -134,8 +136,9 @@ class Run {
   const std::vector<int>& materials() const { return materials_; }  ///< N, of the scene's
   /// N: index into the scene's fills and then inlets; -1 for a grain placed by hand.
   const std::vector<int>& groups() const { return groups_; }
-  const PinnedGrains& pinned() const { return pinned_; }                 ///< what nothing moves
-  const Ledger& start() const { return start_; }                         ///< the ledger at time 0
+  const PinnedGrains& pinned() const { return pinned_; }  ///< what no force moves
+  bool drives() const { return drives_; }                 ///< whether any grain is driven
+  const Ledger& start() const { return start_; }          ///< the ledger at time 0
   double energy_residual() const { return residual(ledger(), start_); }  ///< [J]
   const ContactAudit<Dim>& audit() const { return audit_; }  ///< what audits have found so far
 
@@ -162,6 +165,7 @@ class Run {
   std::vector<int> materials_;
   std::vector<int> groups_;
   PinnedGrains pinned_;
+  bool drives_ = false;
   std::int64_t steps_planned_ = 0;
   Ledger start_;
   ContactAudit<Dim> audit_;

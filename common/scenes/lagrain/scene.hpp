@@ -4,8 +4,10 @@
 /// A scene: what a TOML file says, as plain numbers in SI. The physics lives in types; make_run
 /// (run.hpp) turns the names into them.
 
+#include <lagrain/body_force.hpp>
 #include <lagrain/check.hpp>
 #include <lagrain/contact_laws.hpp>
+#include <lagrain/gravity.hpp>
 #include <lagrain/touch.hpp>
 #include <lagrain/vec.hpp>
 #include <lagrain/walls.hpp>
@@ -90,7 +92,9 @@ struct Fill {
   Arrangement arrangement = Arrangement::lattice;  ///< rows, or places at random
   Vec<Dim> velocity = Vec<Dim>::Zero();            ///< [m/s]
   double random_speed = 0;                         ///< added, in a random direction [m/s]
+  SpinVec<Dim> spin = SpinVec<Dim>::Zero();        ///< [rad/s]
   bool pinned = false;                             ///< all of them stay where they are
+  bool driven = false;                             ///< all of them keep velocity and spin
 };
 
 /// An axis-parallel box.
@@ -131,6 +135,9 @@ struct PlacedGrain {
   SpinVec<Dim> spin = SpinVec<Dim>::Zero();  ///< [rad/s]
   int material = 0;                          ///< place among the materials
   bool pinned = false;                       ///< stays where it is
+  bool driven = false;                       ///< keeps its velocity and spin
+
+  bool held() const { return pinned || driven; }  ///< no force moves it
 };
 
 /// Grains that a file of comma-separated values lists. It is read when the grains are placed.
@@ -142,6 +149,7 @@ struct GrainFile {
   Vec<Dim> shift = Vec<Dim>::Zero();  ///< added to every place in the file [m]
   bool at_rest = false;               ///< without the file's velocities and spins
   bool pinned = false;                ///< all of them stay where they are
+  bool driven = false;                ///< all of them keep velocity and spin
 };
 
 /// A time step [s], or a fraction of the shortest contact time.
@@ -173,14 +181,16 @@ struct Scene {
   std::string file;                  ///< where it was read; empty if built by a program
   std::map<std::string, int> lines;  ///< key -> line in that file, for messages
 
-  std::string title;                             ///< for people
-  std::uint64_t seed = 1;                        ///< of everything random
-  double duration = 0;                           ///< [s]
-  TimeStep time_step;                            ///< of the integrator
-  Vec<Dim> gravity = Vec<Dim>::Zero();           ///< [m/s^2]
-  double depth = 1;                              ///< of a disc [m]; spheres ignore it
-  NormalModel normal = NormalModel::linear;      ///< the law along the normal
-  FrictionModel friction = FrictionModel::none;  ///< the law of friction
+  std::string title;                                    ///< for people
+  std::uint64_t seed = 1;                               ///< of everything random
+  double duration = 0;                                  ///< [s]
+  TimeStep time_step;                                   ///< of the integrator
+  Vec<Dim> gravity = Vec<Dim>::Zero();                  ///< at the start [m/s^2]
+  GravityCourse<Dim> gravity_course = SteadyGravity{};  ///< how it changes
+  std::optional<Drag<Dim>> drag;                        ///< of a fluid around the grains
+  double depth = 1;                                     ///< of a disc [m]; spheres ignore it
+  NormalModel normal = NormalModel::linear;             ///< the law along the normal
+  FrictionModel friction = FrictionModel::none;         ///< the law of friction
   IntegratorModel integrator = IntegratorModel::velocity_verlet;         ///< of the motion
   NeighbourhoodModel neighbourhood = NeighbourhoodModel::triangulation;  ///< what proposes pairs
   double largest_overlap = kLargestOverlap;  ///< of the smaller radius: beyond it the run stops [-]
