@@ -245,6 +245,17 @@ Turning<Dim> turning_at(const Upright&, double) {
   return {SpinVec<Dim>::Zero(), Vec<Dim>::Zero()};
 }
 
+/// How fast it ever turns [rad/s].
+template <int Dim>
+double largest_rate(const Turn<Dim>& turn) {
+  return turn.rate;
+}
+template <int Dim>
+double largest_rate(const Swing<Dim>& swing) {
+  return 2 * std::numbers::pi * swing.frequency * swing.amplitude;
+}
+double largest_rate(const Upright&) { return 0; }
+
 /// Whether turning about an axis through the wall's point leaves all of its pieces where they are.
 template <int Dim>
 bool is_round(const Sheet<Dim>& sheet, const SpinVec<Dim>& axis) {
@@ -276,13 +287,17 @@ std::string Wall<Dim>::defect() const {
   if (yields()) return "a piston does not turn";
   const Turning<Dim> now = std::visit([](const auto& m) { return turning_at<Dim>(m, 0); }, turning);
   if (!(std::abs(now.axis.squaredNorm() - 1) < 1e-9)) return "it turns about no axis";
-  const std::string give = Dim == 2 ? "; give segments" : "; give plates";
-  if (const auto* plane = std::get_if<HalfSpace<Dim>>(&shape)) {
-    bool about_normal = false;
-    if constexpr (Dim == 3) about_normal = now.axis.cross(plane->normal).norm() < kSeam;
-    if (!about_normal) return "what has no end turns about its normal alone" + give;
-  }
-  if constexpr (Dim == 3) {
+  constexpr double kFastest = 1e100;  // its square, and the way in any time, is a double
+  const double rate = std::visit([](const auto& m) { return largest_rate(m); }, turning);
+  if (!(std::abs(rate) < kFastest)) return "it turns faster than numbers tell; slow it down";
+  const auto* plane = std::get_if<HalfSpace<Dim>>(&shape);
+  if constexpr (Dim == 2) {
+    if (plane) return "a line without an end does not turn; give from and to, or points";
+  } else {
+    const std::string give = "; give plates";
+    if (plane && !(now.axis.cross(plane->normal).norm() < kSeam)) {
+      return "what has no end turns about its normal alone" + give;
+    }
     const auto* round = std::get_if<Cylinder<Dim>>(&shape);
     if (round && !round->axis.isZero(0) && !(now.axis.cross(round->axis).norm() < kSeam)) {
       return "what has no end turns about its axis alone" + give;
