@@ -307,6 +307,55 @@ std::string Wall<Dim>::defect() const {
 }
 
 template <int Dim>
+std::string pressure_defect(const std::vector<Wall<Dim>>& walls, const Wall<Dim>& wall) {
+  const auto* piston = std::get_if<Piston<Dim>>(&wall.motion);
+  if (!piston || !piston->pressure) return "";
+  const Pressure<Dim>& pressure = *piston->pressure;
+  if (!(pressure.value > 0 && std::isfinite(pressure.value))) return "a pressure is positive";
+  if (!(pressure.depth > 0 && std::isfinite(pressure.depth))) return "a depth is positive";
+  const auto* face = std::get_if<HalfSpace<Dim>>(&wall.shape);
+  if (!face) return "a piston that holds a pressure has point and normal, along which it presses";
+  std::vector<Vec<Dim>> normals{face->normal};
+  std::vector<std::string> names{wall.name};
+  for (const auto& pair : pressure.between) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (pair[k] < 0 || pair[k] >= static_cast<int>(walls.size())) {
+        return "it presses between walls that are not there";
+      }
+      const Wall<Dim>& side = walls[static_cast<std::size_t>(pair[k])];
+      const auto* plane = std::get_if<HalfSpace<Dim>>(&side.shape);
+      if (!plane) return "wall " + side.name + " is no flat wall with point and normal";
+      if (k == 1) {
+        if (pair[0] == pair[1]) return "it presses between wall " + side.name + " and itself";
+        const Vec<Dim>& other = normals.back();
+        if (!((plane->normal - plane->normal.dot(other) * other).norm() < kSeam)) {
+          return "walls " + names.back() + " and " + side.name + " are not parallel";
+        }
+        continue;
+      }
+      for (std::size_t n = 0; n < normals.size(); ++n) {
+        if (std::abs(plane->normal.dot(normals[n])) < kSeam) continue;
+        return "wall " + side.name + " is not at a right angle to wall " + names[n];
+      }
+      normals.push_back(plane->normal);
+      names.push_back(side.name);
+    }
+  }
+  return "";
+}
+
+template <int Dim>
+double area_of(const Pressure<Dim>& pressure, const std::vector<Wall<Dim>>& walls) {
+  double area = pressure.depth;
+  for (const auto& [a, b] : pressure.between) {
+    const Wall<Dim>& side = walls[static_cast<std::size_t>(a)];
+    const Vec<Dim> across = walls[static_cast<std::size_t>(b)].point - side.point;
+    area *= std::abs(across.dot(std::get<HalfSpace<Dim>>(side.shape).normal));
+  }
+  return area;
+}
+
+template <int Dim>
 typename Wall<Dim>::Foot Wall<Dim>::foot_on(const Sheet<Dim>& sheet, int piece,
                                             const Vec<Dim>& x) const {
   const WallPiece<Dim>& p = sheet.piece(piece);
@@ -345,6 +394,10 @@ std::vector<Vec<Dim>> Wall<Dim>::corners() const {
   return list;
 }
 
+template std::string pressure_defect<2>(const std::vector<Wall<2>>&, const Wall<2>&);
+template std::string pressure_defect<3>(const std::vector<Wall<3>>&, const Wall<3>&);
+template double area_of<2>(const Pressure<2>&, const std::vector<Wall<2>>&);
+template double area_of<3>(const Pressure<3>&, const std::vector<Wall<3>>&);
 template std::string Wall<2>::defect() const;
 template std::string Wall<3>::defect() const;
 template Wall<2>::Foot Wall<2>::foot_on(const Sheet<2>&, int, const Vec<2>&) const;

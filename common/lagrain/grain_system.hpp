@@ -209,6 +209,7 @@ class GrainSystem {
   /// Marks for grains and walls.
   struct Marks {
     std::vector<bool> grains;  ///< by number
+    update_loads(walls_);
     std::vector<bool> walls;   ///< by place among the walls
   };
 

@@ -9,11 +9,13 @@
 #include <lagrain/wall_pieces.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <compare>
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -60,6 +62,16 @@ struct Shake {
   double stop = std::numeric_limits<double>::infinity();  ///< [s]
 };
 
+/// A pressure on a face that reaches from wall to wall: these are half-spaces at right angles to
+/// it, in the plane a parallel pair, in space two such pairs at right angles to each other. So the
+/// face grows and shrinks as they move.
+template <int Dim>
+struct Pressure {
+  double value = 0;                                      ///< [Pa]
+  std::array<std::array<int, 2>, Dim - 1> between = {};  ///< pairs of places among the walls
+  double depth = 1;                                      ///< of discs [m]; 1 in space
+};
+
 /// Motion of a guided mass along its load, pushed by the load and by the grains. It is held until
 /// its start.
 template <int Dim>
@@ -67,6 +79,8 @@ struct Piston {
   double mass;       ///< [kg]
   Vec<Dim> load;     ///< [N], its own weight included
   double start = 0;  ///< [s]
+  /// That it holds: the load is this times the area of its face, along its normal, at each step.
+  std::optional<Pressure<Dim>> pressure = {};
 };
 
 /// Motion along straight ways between places, from each to the next in the time between them. The
@@ -397,6 +411,25 @@ struct WallPair {
 /// Walls that hang together get one seam. Also sees which walls are uneven.
 template <int Dim>
 void join_walls(std::vector<Wall<Dim>>& walls);
+
+/// Why a piston among these walls cannot hold its pressure; empty if it can, or holds none.
+template <int Dim>
+std::string pressure_defect(const std::vector<Wall<Dim>>& walls, const Wall<Dim>& piston);
+
+/// The area [m^2] of a face that a pressure acts on, as the walls are now.
+template <int Dim>
+double area_of(const Pressure<Dim>& pressure, const std::vector<Wall<Dim>>& walls);
+
+/// Brings the loads of all pistons that hold a pressure up to where the walls are now.
+template <int Dim>
+void update_loads(std::vector<Wall<Dim>>& walls) {
+  for (Wall<Dim>& wall : walls) {
+    auto* piston = std::get_if<Piston<Dim>>(&wall.motion);
+    if (!piston || !piston->pressure) continue;
+    piston->load = piston->pressure->value * area_of(*piston->pressure, walls) *
+                   std::get<HalfSpace<Dim>>(wall.shape).normal;
+  }
+}
 
 namespace detail {
 /// The foot of x [m] on a wall that meets others, see contact_foot.

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <thread>
+#include <variant>
 
 namespace lagrain {
 
@@ -195,6 +196,13 @@ std::string explain(const Run<Dim>& run) {
                       std::to_string(detail::due(inlet, scene.duration)) + " in all");
   }
   for (const Outlet<Dim>& outlet : scene.outlets) line("outlet", "\"" + outlet.name + "\"");
+  for (const Wall<Dim>& wall : run.walls()) {
+    const auto* piston = std::get_if<Piston<Dim>>(&wall.motion);
+    if (!piston || !piston->pressure) continue;
+    const double area = area_of(*piston->pressure, run.walls());
+    line("piston", "\"" + wall.name + "\" holds " + shortest(piston->pressure->value) +
+                       " Pa, at the start on " + rounded(area) + " m^2");
+  }
   if (std::isfinite(scales.contact)) {
     line("contact time", rounded(scales.contact) + " s (the shortest)");
     line("time step", rounded(run.time_step()) + " s (1/" +

@@ -32,6 +32,7 @@ inline constexpr Measure kAngularVelocity{"an angular velocity", {0, 0, -1}};
 inline constexpr Measure kSpeed{"a speed", {1, 0, -1}};
 inline constexpr Measure kAcceleration{"an acceleration", {1, 0, -2}};
 inline constexpr Measure kForce{"a force", {1, 1, -2}};
+inline constexpr Measure kPressure{"a pressure", {-1, 1, -2}};
 inline constexpr Measure kDensity{"a density", {-3, 1, 0}};
 
 /// A key of a table, and which numbers it accepts if it holds numbers.
@@ -136,6 +137,7 @@ inline constexpr Key kFrequency{"frequency", detail::kFrequency, Range::positive
 inline constexpr Key kPistonMass{"mass", kMass, Range::positive};
 inline constexpr Key kLoad{"load", kForce};
 inline constexpr Key kTimes{"times", kTime, Range::not_negative};
+inline constexpr Key kPressure{"pressure", detail::kPressure, Range::positive};
 inline constexpr Key kShifts{"shifts", kLength};
 
 inline constexpr Key kTurning{"turning"};

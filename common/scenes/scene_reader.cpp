@@ -225,6 +225,7 @@ class Reader {
     read_domain();
     top_.for_each(keys::kWall, [&](TomlTable& s, int index) { read_wall(s, index); });
     top_.for_each(keys::kBox, [&](TomlTable& s, int) { read_box(s); });
+    resolve_pressures();
     top_.for_each(keys::kMeasure, [&](TomlTable& s, int index) { read_measure(s, index); });
     read_output();
     top_.finish();
@@ -893,8 +894,14 @@ class Reader {
       case detail::MotionType::piston: {
         Piston<Dim> m{};
         m.mass = s.number(keys::kPistonMass);
-        m.load = s.vector<Dim>(keys::kLoad);
-        if (!is_direction(m.load)) s.expected(keys::kLoad, "a force: the piston moves along it");
+        if (s.has(keys::kPressure)) {
+          s.refuse(keys::kLoad, "either load or pressure");
+          read_pressure(s, m, wall);
+        } else {
+          s.refuse(keys::kBetween, "it bounds the face that a pressure acts on; give pressure");
+          m.load = s.vector<Dim>(keys::kLoad);
+          if (!is_direction(m.load)) s.expected(keys::kLoad, "a force: the piston moves along it");
+        }
         m.start = s.number(keys::kStart, m.start);
         s.refuse(keys::kStop, "a piston has none: grains stop it; remove this line");
         wall.motion = m;
@@ -912,6 +919,40 @@ class Reader {
     } else {
       axis = s.vector<3>(keys::kAxis);
       if (!is_direction(axis)) s.expected(keys::kAxis, "a direction");
+  /// The walls that it presses between are found when all have been read.
+  void read_pressure(TomlTable& s, Piston<Dim>& piston, const Wall<Dim>& wall) {
+    const auto* face = std::get_if<HalfSpace<Dim>>(&wall.shape);
+    if (!face) s.fail(keys::kPressure, "it acts along a normal; give the piston point and normal");
+    piston.load = Vec<Dim>::Zero();
+    piston.pressure.emplace();
+    piston.pressure->value = s.number(keys::kPressure);
+    if (Dim == 2) piston.pressure->depth = scene_.depth;
+    const std::string what = Dim == 2 ? "the names of the two walls that it presses between"
+                                      : "the names of four walls: it presses between the first "
+                                        "two, and between the others";
+    const auto names = s.texts(keys::kBetween, what, "a wall");
+    if (names.size() != 2 * (Dim - 1)) s.expected(keys::kBetween, what);
+    pressures_.push_back({scene_.walls.size(), names, s});
+  }
+
+  void resolve_pressures() {
+    std::vector<std::string> known;
+    for (const Wall<Dim>& wall : scene_.walls) known.push_back(wall.name);
+    for (auto& [number, names, s] : pressures_) {
+      Wall<Dim>& wall = scene_.walls[number];
+      auto& between = std::get<Piston<Dim>>(wall.motion).pressure->between;
+      for (std::size_t k = 0; k < names.size(); ++k) {
+        const auto found = std::find(known.begin(), known.end(), names[k]);
+        if (found == known.end()) {
+          s.fail(keys::kBetween, "no wall \"" + names[k] + "\"" + suggestion(names[k], known));
+        }
+        between[k / 2][k % 2] = static_cast<int>(found - known.begin());
+      }
+      const std::string defect = pressure_defect(scene_.walls, wall);
+      if (!defect.empty()) s.fail(keys::kBetween, defect);
+    }
+  }
+
       if (!is_unit(axis)) axis.normalize();
     }
     const Vec<Dim> about = s.has(keys::kAbout) ? s.vector<Dim>(keys::kAbout) : wall.home;
@@ -990,10 +1031,18 @@ Scene<Dim> parse(std::string_view text, const std::string& name,
                  const std::filesystem::path& folder) {
   const toml::table root = detail::parse_toml(text, name);
   if (const int found = dimension_of(root, name); found != Dim) {
+  /// A piston that holds a pressure between walls that may come later.
+  struct PressureBetween {
+    std::size_t wall;
+    std::vector<std::string> names;
+    TomlTable motion;  // for messages
+  };
+
     const std::string key(keys::kDimension.name);
     TomlFile{name, nullptr}.fail(
         *root.get(key), key, "expected " + std::to_string(Dim) + ", got " + std::to_string(found));
   }
+  std::vector<PressureBetween> pressures_;
   return Reader<Dim>(root, name, folder).read();
 }
 

@@ -88,7 +88,11 @@ class Inline {
  public:
   template <class Value>
   Inline& add(const Key& key, const Value& value) {
-    text_ += (text_.empty() ? "" : ", ") + std::string(key.name) + " = " + in_toml(value);
+    return as_it_is(key, in_toml(value));
+  }
+  /// A value that is TOML already.
+  Inline& as_it_is(const Key& key, const std::string& value) {
+    text_ += (text_.empty() ? "" : ", ") + std::string(key.name) + " = " + value;
     return *this;
   }
   bool empty() const { return text_.empty(); }
@@ -374,7 +378,11 @@ class Writer {
                           [&](const Piston<Dim>& m) {
                             type(detail::MotionType::piston);
                             motion.add(keys::kPistonMass, m.mass);
-                            motion.add(keys::kLoad, m.load);
+                            if (m.pressure) {
+                              write_pressure(motion, *m.pressure);
+                            } else {
+                              motion.add(keys::kLoad, m.load);
+                            }
                             motion.add(keys::kStart, m.start);
                           }},
                wall.motion);
@@ -387,6 +395,18 @@ class Writer {
       turning.add(keys::kType, text_of(detail::kTurningWords, type));
       if constexpr (Dim == 3) turning.add(keys::kAxis, m.axis);
       turning.add(keys::kAbout, m.about);
+  void write_pressure(Inline& motion, const Pressure<Dim>& pressure) {
+    std::string names;
+    for (const auto& pair : pressure.between) {
+      for (const int wall : pair) {
+        names += (names.empty() ? "" : ", ") +
+                 in_toml(std::string_view(scene_.walls[static_cast<std::size_t>(wall)].name));
+      }
+    }
+    motion.add(keys::kPressure, pressure.value);
+    motion.as_it_is(keys::kBetween, "[" + names + "]");
+  }
+
       numbers();
       turning.add(keys::kStart, m.start);
       if (std::isfinite(m.stop)) turning.add(keys::kStop, m.stop);
