@@ -7,6 +7,7 @@
 #include <lagrain/check.hpp>
 #include <lagrain/contact_forces.hpp>
 #include <lagrain/contact_law.hpp>
+#include <lagrain/contact_rules.hpp>
 #include <lagrain/grain_store.hpp>
 #include <lagrain/grains.hpp>
 #include <lagrain/law_table.hpp>
@@ -68,6 +69,18 @@ class GrainSystem {
       }
     });
     sort_pairs(pairs, count());
+    return pairs;
+  }
+  /// The listed pairs of grains and walls, sorted: the same for contacts with walls.
+  std::vector<WallPair> near_wall_pairs() const {
+    std::vector<WallPair> pairs;
+    for (const auto& block : near_.blocks()) {
+      for (WallPair pair : block.walls.pairs()) {
+        pair.i = store_.number(pair.i);
+        pairs.push_back(pair);
+      }
+    }
+    std::sort(pairs.begin(), pairs.end());
     return pairs;
   }
   std::size_t near_count() const { return near_.pair_count(); }  ///< how many pairs are listed
@@ -257,7 +270,7 @@ class GrainSystem {
   void expect_no_passage(double t) {
     watch_.expect_no_passage(
         count(), [&](int slot) -> const Record& { return store_.record(slot); },
-        [&](int slot) { return store_.id(slot); }, walls_, t,
+        [&](int slot) { return store_.id(slot); }, walls_, near_.rules(), t,
         near_.shift(t) - near_.shift(watch_.since()), setting_.time_step);
   }
 
@@ -347,8 +360,10 @@ class GrainSystem {
 
   /// The grains have come to lie in other slots, or they are others.
   void meet_grains() {
-    near_.pin(PinnedGrains(count(),
-                           [&](int slot) { return store_.record(slot).at[Record::kInverseMass]; }));
+    near_.set_rules(ContactRules(
+        PinnedGrains(count(),
+                     [&](int slot) { return store_.record(slot).at[Record::kInverseMass]; }),
+        store_.materials(), laws_.apart()));
     strays_.assign(near_.blocks().size(), {});
     // A run that may overlap without a limit may pass through things as well.
     if (std::isfinite(setting_.largest_overlap) && count() > 0) {

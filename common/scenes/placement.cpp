@@ -106,6 +106,7 @@ class Placer {
  public:
   explicit Placer(const Scene<Dim>& scene)
       : scene_(scene),
+        apart_(scene.apart()),
         walls_(scene.walls),
         listed_(read_files(scene)),
         cell_(cell_size(scene, listed_)),
@@ -184,6 +185,7 @@ class Placer {
     };
     for (const Wall<Dim>& wall : walls_) {
       if (p.pinned && !wall.yields()) continue;  // neither can move
+      if (apart(p.material, wall.material)) continue;
       const double distance = wall.foot(p.position).distance;
       if (distance < 0) throw refusal(index, "lies behind wall \"" + wall.name + "\"");
       const double overlap = (p.radius - distance) / p.radius;
@@ -193,7 +195,7 @@ class Placer {
       const Grain<Dim>& other = placed_.grains[static_cast<std::size_t>(j)];
       const double overlap = (p.radius + other.radius - (p.position - other.position).norm()) /
                              std::min(p.radius, other.radius);
-      if (overlap > limit && !(p.pinned && other.pinned)) {
+      if (overlap > limit && !(p.pinned && other.pinned) && !apart(p.material, other.material)) {
         throw overlaps(name_of(static_cast<std::size_t>(j)), overlap);
       }
       return true;
@@ -208,6 +210,10 @@ class Placer {
     grain.mass = scene_.materials[static_cast<std::size_t>(p.material)].density *
                  grain_volume<Dim>(p.radius, scene_.depth);
     add(grain, -1);
+  }
+
+  bool apart(int a, int b) const {
+    return apart_(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
   }
 
   void add(const Grain<Dim>& grain, int group) {
@@ -411,6 +417,7 @@ class Placer {
   double cell_;                                    // [m]
   Occupied<Dim> occupied_;
   Placement<Dim> placed_;
+  MaterialsApart apart_;
 };
 
 }  // namespace

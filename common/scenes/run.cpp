@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <thread>
 #include <variant>
 
@@ -20,11 +21,13 @@ namespace lagrain {
 
 template <int Dim>
 Run<Dim>::Run(Scene<Dim> scene, Placement<Dim> placement)
-    : scene_(std::move(scene)),
-      groups_(std::move(placement.group)),
-      pinned_(static_cast<int>(placement.grains.size()),
-              [&](int i) { return placement.grains[static_cast<std::size_t>(i)].pinned ? 0 : 1; }) {
-  for (const Grain<Dim>& grain : placement.grains) materials_.push_back(grain.material);
+    : scene_(std::move(scene)), groups_(std::move(placement.group)) {
+  std::vector<bool> pinned;
+  for (const Grain<Dim>& grain : placement.grains) {
+    materials_.push_back(grain.material);
+    pinned.push_back(grain.pinned);
+  }
+  set_rules(pinned);
   if (!scene_.inlets.empty() || !scene_.outlets.empty() || scene_.domain) {
     traffic_ = std::make_unique<detail::Traffic<Dim>>(scene_);
   }
@@ -61,6 +64,14 @@ void Run<Dim>::step(std::int64_t count) {
 }
 
 template <int Dim>
+void Run<Dim>::set_rules(const std::vector<bool>& pinned) {
+  rules_ =
+      ContactRules(PinnedGrains(static_cast<int>(pinned.size()),
+                                [&](int i) { return pinned[static_cast<std::size_t>(i)] ? 0 : 1; }),
+                   std::vector<std::uint8_t>(materials_.begin(), materials_.end()), scene_.apart());
+}
+
+template <int Dim>
 void Run<Dim>::look_after_traffic() {
   const auto change = traffic_->look(*this);
   if (change.leavers.empty() && change.newcomers.empty()) return;
@@ -75,7 +86,7 @@ void Run<Dim>::look_after_traffic() {
     const std::size_t now = pinned.size();
     materials_[now] = materials_[i];
     groups_[now] = groups_[i];
-    pinned.push_back(pinned_[static_cast<int>(i)]);
+    pinned.push_back(rules_.pinned()[static_cast<int>(i)]);
   }
   materials_.resize(pinned.size());
   groups_.resize(pinned.size());
@@ -84,8 +95,7 @@ void Run<Dim>::look_after_traffic() {
     pinned.push_back(grain.pinned);
   }
   groups_.insert(groups_.end(), change.groups.begin(), change.groups.end());
-  pinned_ =
-      PinnedGrains(count(), [&](int i) { return pinned[static_cast<std::size_t>(i)] ? 0 : 1; });
+  set_rules(pinned);
 }
 
 template <int Dim>
@@ -103,7 +113,9 @@ void Run<Dim>::check_contacts() {
   const bool due = count() <= kEveryStepLimit || listed_anew || steps() % scene_.audit_every == 0;
   // A fourth-order step ends with a drift after its last forces: a list that expired there is
   // renewed before anybody reads it.
-  if (due && near_is_valid()) audit_.check(positions(), radii(), near_pairs(), pinned_);
+  if (!due || !near_is_valid()) return;
+  audit_.check(positions(), radii(), near_pairs(), rules_);
+  audit_.check_walls(positions(), radii(), walls(), near_wall_pairs(), rules_);
 }
 
 template <int Dim>
@@ -196,6 +208,12 @@ std::string explain(const Run<Dim>& run) {
                       std::to_string(detail::due(inlet, scene.duration)) + " in all");
   }
   for (const Outlet<Dim>& outlet : scene.outlets) line("outlet", "\"" + outlet.name + "\"");
+  for (const PairLaw& pair : scene.pairs) {
+    if (pair.touch) continue;
+    line("no contacts", "between \"" + scene.materials[static_cast<std::size_t>(pair.a)].name +
+                            "\" and \"" + scene.materials[static_cast<std::size_t>(pair.b)].name +
+                            "\"");
+  }
   for (const Wall<Dim>& wall : run.walls()) {
     const auto* piston = std::get_if<Piston<Dim>>(&wall.motion);
     if (!piston || !piston->pressure) continue;
@@ -209,7 +227,7 @@ std::string explain(const Run<Dim>& run) {
                           rounded(scales.contact / run.time_step()) + " contact)");
     line("safe step", rounded(scales.safe_step) + " s (the largest allowed)");
   } else {
-    line("contact time", "none: nothing in the scene can move");
+    line("contact time", "none: " + detail::why_no_contact(scene));
     line("time step", rounded(run.time_step()) + " s");
   }
   const OverlapEstimate guess = estimate_overlap(run);

@@ -76,6 +76,7 @@ inline constexpr Key kMeasure{"measure"};
 inline constexpr Key kOutput{"output"};
 
 inline constexpr Key kBetween{"between"};
+inline constexpr Key kTouch{"touch"};
 
 inline constexpr Key kMaterialDensity{"density", kDensity, Range::positive};
 

@@ -324,7 +324,8 @@ class Reader {
         top_.fail(keys::kIntegrator, why + "friction = \"none\"");
       }
       bool lossless = scene_.law.restitution == 1;
-      for (const PairLaw& p : scene_.pairs) lossless = lossless && p.law.restitution == 1;
+      for (const PairLaw& p : scene_.pairs)
+        lossless = lossless && (p.law.restitution == 1 || !p.touch);
       if (!lossless) top_.fail(keys::kIntegrator, why + "restitution = 1");
     }
   }
@@ -340,6 +341,15 @@ class Reader {
     for (const PairLaw& earlier : scene_.pairs) {
       if (earlier.a == law.a && earlier.b == law.b) {
         s.fail(keys::kBetween, "a second time [\"" + names[0] + "\", \"" + names[1] + "\"]");
+      }
+    }
+    law.touch = s.flag(keys::kTouch, law.touch);
+    if (!law.touch) {
+      for (const auto& law_keys :
+           {description_of(scene_.normal).keys, description_of(scene_.friction).keys}) {
+        for (const LawKey& key : law_keys) {
+          s.refuse(detail::key_of(key), "the two do not touch; remove this line");
+        }
       }
     }
     law.law = read_law(s, Dim, scene_.normal, scene_.friction, &scene_.law);

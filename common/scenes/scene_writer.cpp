@@ -127,7 +127,11 @@ class Writer {
       one_of(keys::kPair);
       out_.as_it_is(keys::kBetween, "[" + in_toml(material_name(pair.a)) + ", " +
                                         in_toml(material_name(pair.b)) + "]");
-      write_law(pair.law);
+      if (pair.touch) {
+        write_law(pair.law);
+      } else {
+        out_.add(keys::kTouch, false);
+      }
     }
     for (const Fill<Dim>& fill : scene_.fills) write_fill(fill);
     for (const PlacedGrain<Dim>& grain : scene_.grains) write_grain(grain);

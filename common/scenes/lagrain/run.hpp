@@ -5,8 +5,8 @@
 
 #include <lagrain/any_neighbourhood.hpp>
 #include <lagrain/audit.hpp>
+#include <lagrain/contact_rules.hpp>
 #include <lagrain/observe.hpp>
-#include <lagrain/pinned_grains.hpp>
 #include <lagrain/placement.hpp>
 #include <lagrain/scene.hpp>
 #include <lagrain/time_step.hpp>
@@ -107,6 +107,7 @@ class Run {
   virtual ContactStatistics statistics() const = 0;                ///< of the contacts now
   virtual Ledger ledger() const = 0;                               ///< where the energy is now
   virtual std::vector<Pair> near_pairs() const = 0;                ///< sorted
+  virtual std::vector<WallPair> near_wall_pairs() const = 0;       ///< sorted
   virtual std::int64_t refreshes() const = 0;                      ///< of the near list
   virtual const AnyNeighbourhood<Dim>& neighbourhood() const = 0;  ///< what proposes pairs
   /// Wall-clock time spent on knowing the near pairs [s].
@@ -128,7 +129,8 @@ class Run {
   const std::vector<int>& materials() const { return materials_; }  ///< N, of the scene's
   /// N: index into the scene's fills and then inlets; -1 for a grain placed by hand.
   const std::vector<int>& groups() const { return groups_; }
-  const PinnedGrains& pinned() const { return pinned_; }                 ///< what nothing moves
+  const ContactRules& rules() const { return rules_; }            ///< who may touch whom
+  const PinnedGrains& pinned() const { return rules_.pinned(); }  ///< what nothing moves
   const Ledger& start() const { return start_; }                         ///< the ledger at time 0
   double energy_residual() const { return residual(ledger(), start_); }  ///< [J]
   const ContactAudit<Dim>& audit() const { return audit_; }  ///< what audits have found so far
@@ -148,12 +150,14 @@ class Run {
   virtual bool near_is_valid() const = 0;
   void check_contacts();
   void look_after_traffic();
+  /// @param pinned  of each grain
+  void set_rules(const std::vector<bool>& pinned);
 
   Scene<Dim> scene_;
   std::unique_ptr<detail::Traffic<Dim>> traffic_;  // null where nobody comes or leaves
   std::vector<int> materials_;
   std::vector<int> groups_;
-  PinnedGrains pinned_;
+  ContactRules rules_;
   std::int64_t steps_planned_ = 0;
   Ledger start_;
   ContactAudit<Dim> audit_;

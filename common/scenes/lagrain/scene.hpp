@@ -6,10 +6,12 @@
 
 #include <lagrain/check.hpp>
 #include <lagrain/contact_laws.hpp>
+#include <lagrain/law_table.hpp>
 #include <lagrain/touch.hpp>
 #include <lagrain/vec.hpp>
 #include <lagrain/walls.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -37,9 +39,10 @@ std::string_view name_of(NeighbourhoodModel model);
 
 /// Numbers that hold between two materials instead of the scene's own.
 struct PairLaw {
-  int a = 0;       ///< material
-  int b = 0;       ///< material
-  LawNumbers law;  ///< the numbers of the law
+  int a = 0;          ///< material
+  int b = 0;          ///< material
+  LawNumbers law;     ///< the numbers of the law
+  bool touch = true;  ///< false: what is made of the two goes through each other
 };
 
 /// What grains and walls are made of.
@@ -209,6 +212,16 @@ struct Scene {
       if (const auto line = lines.find(key); line != lines.end()) {
         text += std::to_string(line->second) + ":";
       }
+  /// The materials that do not touch.
+  MaterialsApart apart() const {
+    MaterialsApart apart;
+    for (const PairLaw& pair : pairs) {
+      if (!pair.touch)
+        apart.add(static_cast<std::size_t>(pair.a), static_cast<std::size_t>(pair.b));
+    }
+    return apart;
+  }
+
       text += " ";
     }
     return SceneError(text + key + ": " + message);
