@@ -209,6 +209,7 @@ class GrainSystem {
   /// Brings the walls to time t [s], a step dt [s] after the last call. A wall that goes takes
   /// along what the contacts with it have stored.
   void advance_walls(double t, double dt) {
+    update_loads(walls_);
     for (std::size_t w = 0; w < walls_.size(); ++w) {
       if (!walls_[w].gone && t >= walls_[w].until) {
         const double taken = elastic_energy_at(w);
@@ -222,7 +223,6 @@ class GrainSystem {
   /// Marks for grains and walls.
   struct Marks {
     std::vector<bool> grains;  ///< by number
-    update_loads(walls_);
     std::vector<bool> walls;   ///< by place among the walls
   };
 

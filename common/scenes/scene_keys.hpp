@@ -137,8 +137,8 @@ inline constexpr Key kAmplitude{"amplitude", kLength};
 inline constexpr Key kFrequency{"frequency", detail::kFrequency, Range::positive};
 inline constexpr Key kPistonMass{"mass", kMass, Range::positive};
 inline constexpr Key kLoad{"load", kForce};
-inline constexpr Key kTimes{"times", kTime, Range::not_negative};
 inline constexpr Key kPressure{"pressure", detail::kPressure, Range::positive};
+inline constexpr Key kTimes{"times", kTime, Range::not_negative};
 inline constexpr Key kShifts{"shifts", kLength};
 
 inline constexpr Key kTurning{"turning"};

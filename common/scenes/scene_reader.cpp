@@ -367,9 +367,7 @@ class Reader {
     }
     fill.count = read_count(s);
     fill.radius = read_radius(s);
-    const Region<Dim> region = read_region(s);
-    fill.low = region.low;
-    fill.high = region.high;
+    fill.region = read_region(s);
     fill.pinned = s.flag(keys::kPinned, fill.pinned);
     if (fill.pinned) {
       s.refuse(keys::kVelocity, "pinned grains stay; remove this line");
@@ -475,7 +473,7 @@ class Reader {
     scene_.domain = domain;
   }
 
-  /// Inlets and outlets are columns of the series.
+  /// Inlets, outlets and planes are columns of the series.
   void expect_new_door(TomlTable& s, const std::string& name) {
     const auto called = [&](const auto& door) { return door.name == name; };
     if (std::any_of(scene_.inlets.begin(), scene_.inlets.end(), called) ||
@@ -921,14 +919,6 @@ class Reader {
     s.finish();
   }
 
-  void read_turning(TomlTable s, Wall<Dim>& wall) {
-    const auto type = s.word<detail::TurningType>(keys::kType, detail::kTurningWords);
-    SpinVec<Dim> axis = SpinVec<Dim>::Ones();
-    if constexpr (Dim == 2) {
-      s.refuse(keys::kAxis, "in the plane all turns about the same; remove this line");
-    } else {
-      axis = s.vector<3>(keys::kAxis);
-      if (!is_direction(axis)) s.expected(keys::kAxis, "a direction");
   /// The walls that it presses between are found when all have been read.
   void read_pressure(TomlTable& s, Piston<Dim>& piston, const Wall<Dim>& wall) {
     const auto* face = std::get_if<HalfSpace<Dim>>(&wall.shape);
@@ -963,6 +953,14 @@ class Reader {
     }
   }
 
+  void read_turning(TomlTable s, Wall<Dim>& wall) {
+    const auto type = s.word<detail::TurningType>(keys::kType, detail::kTurningWords);
+    SpinVec<Dim> axis = SpinVec<Dim>::Ones();
+    if constexpr (Dim == 2) {
+      s.refuse(keys::kAxis, "in the plane all turns about the same; remove this line");
+    } else {
+      axis = s.vector<3>(keys::kAxis);
+      if (!is_direction(axis)) s.expected(keys::kAxis, "a direction");
       if (!is_unit(axis)) axis.normalize();
     }
     const Vec<Dim> about = s.has(keys::kAbout) ? s.vector<Dim>(keys::kAbout) : wall.home;
@@ -986,14 +984,18 @@ class Reader {
   }
 
   void read_measure(TomlTable& s, int index) {
-    MeasuredRegion<Dim> measure;
-    measure.name = s.text(keys::kName, "measure " + std::to_string(index + 1));
-    for (const MeasuredRegion<Dim>& other : scene_.measures) {
-      if (other.name == measure.name) s.fail(keys::kName, "a second \"" + measure.name + "\"");
+    const std::string name = s.text(keys::kName, "measure " + std::to_string(index + 1));
+    const auto called = [&](const auto& other) { return other.name == name; };
+    if (std::any_of(scene_.measures.begin(), scene_.measures.end(), called) ||
+        std::any_of(scene_.planes.begin(), scene_.planes.end(), called)) {
+      s.fail(keys::kName, "a second \"" + name + "\"");
     }
-    const Region<Dim> region = read_region(s);
-    measure.low = region.low;
-    measure.high = region.high;
+    if (s.has(keys::kPoint) || s.has(keys::kNormal)) {
+      read_plane(s, name);
+      return;
+    }
+    if (!s.has(keys::kRegion)) s.missing(keys::kRegion, "a region, or point and normal of a plane");
+    MeasuredRegion<Dim> measure{.name = name, .region = read_region(s)};
     const std::int64_t slices = s.integer(keys::kSlices, 1, measure.slices);
     if (slices > kMostSlices) {
       s.expected(keys::kSlices, "at most " + std::to_string(kMostSlices) + " slices");
@@ -1006,6 +1008,19 @@ class Reader {
     scene_.measures.push_back(std::move(measure));
   }
 
+  /// Reads a plane through which the flow is measured.
+  void read_plane(TomlTable& s, const std::string& name) {
+    expect_new_door(s, name);
+    MeasuredPlane<Dim> plane{name, s.vector<Dim>(keys::kPoint), s.vector<Dim>(keys::kNormal), {}};
+    if (!is_direction(plane.normal)) s.expected(keys::kNormal, "a direction");
+    if (!is_unit(plane.normal)) plane.normal.normalize();
+    if (s.has(keys::kRegion)) plane.region = read_region(s);
+    for (const Key& key : {keys::kSlices, keys::kAxis}) {
+      s.refuse(key, "a plane has no slices; remove this line");
+    }
+    scene_.planes.push_back(std::move(plane));
+  }
+
   void read_output() {
     if (!top_.has(keys::kOutput)) return;
     TomlTable s = top_.table(keys::kOutput);
@@ -1016,10 +1031,18 @@ class Reader {
     s.finish();
   }
 
+  /// A piston that holds a pressure between walls that may come later.
+  struct PressureBetween {
+    std::size_t wall;
+    std::vector<std::string> names;
+    TomlTable motion;  // for messages
+  };
+
   Scene<Dim> scene_;
   TomlFile file_;
   std::filesystem::path folder_;
   TomlTable top_;
+  std::vector<PressureBetween> pressures_;
 };
 
 /// Scenes are called by their file's name in messages, without the folder.
@@ -1041,18 +1064,10 @@ Scene<Dim> parse(std::string_view text, const std::string& name,
                  const std::filesystem::path& folder) {
   const toml::table root = detail::parse_toml(text, name);
   if (const int found = dimension_of(root, name); found != Dim) {
-  /// A piston that holds a pressure between walls that may come later.
-  struct PressureBetween {
-    std::size_t wall;
-    std::vector<std::string> names;
-    TomlTable motion;  // for messages
-  };
-
     const std::string key(keys::kDimension.name);
     TomlFile{name, nullptr}.fail(
         *root.get(key), key, "expected " + std::to_string(Dim) + ", got " + std::to_string(found));
   }
-  std::vector<PressureBetween> pressures_;
   return Reader<Dim>(root, name, folder).read();
 }
 

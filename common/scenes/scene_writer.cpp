@@ -144,6 +144,7 @@ class Writer {
     }
     for (const Wall<Dim>& wall : scene_.walls) write_wall(wall);
     for (const MeasuredRegion<Dim>& measure : scene_.measures) write_measure(measure);
+    for (const MeasuredPlane<Dim>& plane : scene_.planes) write_plane(plane);
     write_output();
     return std::move(out_).text();
   }
@@ -192,7 +193,7 @@ class Writer {
     out_.add(keys::kMaterial, material_name(fill.material));
     if (fill.count) out_.add(keys::kCount, *fill.count);
     write_radius(fill.radius);
-    write_region(fill.low, fill.high);
+    write_region(fill.region);
     out_.add(keys::kArrangement, text_of(detail::kArrangementWords, fill.arrangement));
     if (fill.pinned) {
       out_.add(keys::kPinned, true);
@@ -206,7 +207,7 @@ class Writer {
     out_.add(keys::kName, std::string_view(inlet.name));
     out_.add(keys::kMaterial, material_name(inlet.material));
     write_radius(inlet.radius);
-    write_region(inlet.region.low, inlet.region.high);
+    write_region(inlet.region);
     out_.add(keys::kRate, inlet.rate);
     out_.add(keys::kStart, inlet.start);
     if (std::isfinite(inlet.stop)) out_.add(keys::kStop, inlet.stop);
@@ -225,8 +226,9 @@ class Writer {
     out_.add(keys::kHigh, region.high);
   }
 
-  void write_region(const Vec<Dim>& low, const Vec<Dim>& high) {
-    out_.as_it_is(keys::kRegion, Inline{}.add(keys::kLow, low).add(keys::kHigh, high).text());
+  void write_region(const Region<Dim>& region) {
+    out_.as_it_is(keys::kRegion,
+                  Inline{}.add(keys::kLow, region.low).add(keys::kHigh, region.high).text());
   }
 
   /// Of a fill or an inlet.
@@ -393,12 +395,6 @@ class Writer {
     if (!motion.empty()) out_.as_it_is(keys::kMotion, motion.text());
   }
 
-  void write_turning(const Wall<Dim>& wall) {
-    Inline turning;
-    const auto write = [&](detail::TurningType type, const auto& m, auto&& numbers) {
-      turning.add(keys::kType, text_of(detail::kTurningWords, type));
-      if constexpr (Dim == 3) turning.add(keys::kAxis, m.axis);
-      turning.add(keys::kAbout, m.about);
   void write_pressure(Inline& motion, const Pressure<Dim>& pressure) {
     std::string names;
     for (const auto& pair : pressure.between) {
@@ -411,6 +407,12 @@ class Writer {
     motion.as_it_is(keys::kBetween, "[" + names + "]");
   }
 
+  void write_turning(const Wall<Dim>& wall) {
+    Inline turning;
+    const auto write = [&](detail::TurningType type, const auto& m, auto&& numbers) {
+      turning.add(keys::kType, text_of(detail::kTurningWords, type));
+      if constexpr (Dim == 3) turning.add(keys::kAxis, m.axis);
+      turning.add(keys::kAbout, m.about);
       numbers();
       turning.add(keys::kStart, m.start);
       if (std::isfinite(m.stop)) turning.add(keys::kStop, m.stop);
@@ -433,11 +435,18 @@ class Writer {
   void write_measure(const MeasuredRegion<Dim>& measure) {
     one_of(keys::kMeasure);
     out_.add(keys::kName, std::string_view(measure.name));
-    out_.as_it_is(keys::kRegion,
-                  Inline{}.add(keys::kLow, measure.low).add(keys::kHigh, measure.high).text());
+    write_region(measure.region);
     out_.add(keys::kSlices, measure.slices);
     out_.add(keys::kAxis,
              std::string_view("xyz").substr(static_cast<std::size_t>(measure.axis), 1));
+  }
+
+  void write_plane(const MeasuredPlane<Dim>& plane) {
+    one_of(keys::kMeasure);
+    out_.add(keys::kName, std::string_view(plane.name));
+    out_.add(keys::kPoint, plane.point);
+    out_.add(keys::kNormal, plane.normal);
+    if (plane.region) write_region(*plane.region);
   }
 
   void write_output() {

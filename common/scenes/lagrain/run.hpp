@@ -8,6 +8,7 @@
 #include <lagrain/contact_rules.hpp>
 #include <lagrain/observe.hpp>
 #include <lagrain/placement.hpp>
+#include <lagrain/plane_flow.hpp>
 #include <lagrain/scene.hpp>
 #include <lagrain/time_step.hpp>
 
@@ -131,6 +132,8 @@ class Run {
   const std::vector<int>& groups() const { return groups_; }
   const ContactRules& rules() const { return rules_; }            ///< who may touch whom
   const PinnedGrains& pinned() const { return rules_.pinned(); }  ///< what nothing moves
+  /// What has passed through the scene's planes since the start, one entry for each of them.
+  std::vector<PlaneFlow<Dim>> flows() const;
   const Ledger& start() const { return start_; }                         ///< the ledger at time 0
   double energy_residual() const { return residual(ledger(), start_); }  ///< [J]
   const ContactAudit<Dim>& audit() const { return audit_; }  ///< what audits have found so far
@@ -150,6 +153,7 @@ class Run {
   virtual bool near_is_valid() const = 0;
   void check_contacts();
   void look_after_traffic();
+  void look_at_planes(std::vector<PlaneFlow<Dim>>& flows) const;
   /// @param pinned  of each grain
   void set_rules(const std::vector<bool>& pinned);
 
@@ -158,6 +162,7 @@ class Run {
   std::vector<int> materials_;
   std::vector<int> groups_;
   ContactRules rules_;
+  std::vector<PlaneFlow<Dim>> flows_;  // as they were looked at last
   std::int64_t steps_planned_ = 0;
   Ledger start_;
   ContactAudit<Dim> audit_;
