@@ -77,7 +77,7 @@ void join_walls(std::vector<Wall<Dim>>& walls) {
       partners[a].push_back(b);
       partners[b].push_back(a);
     }
-    walls[a].joined = !partners[a].empty() || walls[a].piece_count() > 1;
+    walls[a].joined = !partners[a].empty() || walls[a].piece_count() > 1 || walls[a].front_only;
     walls[a].uneven = walls[a].turns() || walls[a].runs();
   }
   // Walls that hang together share one seam, so that each of them judges a joint alike.
@@ -175,6 +175,8 @@ template <int Dim>
 typename Wall<Dim>::Foot foot_on_surface(const Wall<Dim>* walls, std::span<const WallPair> pairs,
                                          std::size_t own_place, const Vec<Dim>& x, double reach) {
   const WallPair& own_pair = pairs[own_place];
+  constexpr double kFar = std::numeric_limits<double>::max();
+  if (walls[own_pair.wall].lets_through(own_pair.i)) return {kFar, Vec<Dim>::UnitX()};
   auto own = walls[own_pair.wall].foot(own_pair.piece, x);
   if (own.distance > reach) return own;
   const double seam = walls[own_pair.wall].seam;
@@ -185,7 +187,8 @@ typename Wall<Dim>::Foot foot_on_surface(const Wall<Dim>* walls, std::span<const
                     walls[pair.wall].feature(pair.piece, point, seam)});
   };
   const auto consider = [&](std::size_t k) {
-    if (!walls[pairs[k].wall].joined) return;
+    const Wall<Dim>& wall = walls[pairs[k].wall];
+    if (!wall.joined || wall.lets_through(own_pair.i)) return;
     const auto foot = walls[pairs[k].wall].foot(pairs[k].piece, x);
     if (foot.distance <= own.distance + 2 * seam) add(pairs[k], foot);
   };
@@ -196,7 +199,7 @@ typename Wall<Dim>::Foot foot_on_surface(const Wall<Dim>* walls, std::span<const
   if (list.empty()) return own;
   add(own_pair, own);
   if (is_contact<Dim>(list, list.size() - 1, walls, seam)) return own;
-  return {std::numeric_limits<double>::max(), own.normal};
+  return {kFar, own.normal};
 }
 
 template Wall<2>::Foot foot_on_surface<2>(const Wall<2>*, std::span<const WallPair>, std::size_t,
@@ -280,6 +283,20 @@ Eigen::Matrix3d rotation(const SpinVec<3>& axis, double angle) {
 
 template <int Dim>
 std::string Wall<Dim>::defect() const {
+  if (front_only) {
+    const auto has_front = [](const WallPiece<Dim>& piece) {
+      return std::visit(
+          [](const auto& p) {
+            return requires { p.front(); };
+          },
+          piece);
+    };
+    if (!pieces()) return "it has one side; only what is thin is solid from its front or both";
+    if (!std::ranges::all_of(pieces()->pieces(), has_front)) {
+      return Dim == 2 ? "an arc is solid from both sides; give points"
+                      : "a round piece is solid from both sides; give plates";
+    }
+  }
   if (const auto* path = std::get_if<Path<Dim>>(&motion)) {
     if (std::string why = defect_of(*path); !why.empty()) return why;
   }
@@ -368,6 +385,40 @@ typename Wall<Dim>::Foot Wall<Dim>::foot_on(const Sheet<Dim>& sheet, int piece,
 }
 
 template <int Dim>
+double Wall<Dim>::in_front(int piece, const Vec<Dim>& x) const {
+  const Vec<Dim> own = in_own_frame(x);
+  return std::visit(
+      [&](const auto& p) -> double {
+        if constexpr (requires { p.front(); }) return (own - p.nearest(own)).dot(p.front());
+        return 0;
+      },
+      pieces()->piece(piece));
+}
+
+template <int Dim>
+void note_encounter(const Wall<Dim>& wall, std::span<const WallPair> pieces, const Vec<Dim>& x,
+                    double radius, std::vector<typename Wall<Dim>::Encounter>& now) {
+  double least = radius, most = -1;
+  bool passes = false;
+  for (const WallPair& pair : pieces) {
+    const double distance = wall.foot(pair.piece, x).distance;
+    if (!(distance < radius) || distance > least + wall.seam) continue;
+    const double side = wall.in_front(pair.piece, x);
+    if (distance < least - wall.seam || std::abs(side) > most) {
+      most = std::abs(side);
+      passes = side < 0;
+    }
+    least = std::min(least, distance);
+  }
+  if (most < 0) return;
+  const int slot = pieces.front().i;
+  const auto before = std::ranges::lower_bound(
+      wall.encounters, slot, {}, [](const auto& encounter) { return encounter.grain; });
+  const bool goes_on = before != wall.encounters.end() && before->grain == slot;
+  now.push_back({slot, goes_on ? before->passes : passes});
+}
+
+template <int Dim>
 void Wall<Dim>::turn_to(double t) {
   const Vec<Dim> shift =
       std::holds_alternative<Fixed>(motion) ? Vec<Dim>(Vec<Dim>::Zero()) : Vec<Dim>(point - home);
@@ -398,6 +449,12 @@ template std::string pressure_defect<2>(const std::vector<Wall<2>>&, const Wall<
 template std::string pressure_defect<3>(const std::vector<Wall<3>>&, const Wall<3>&);
 template double area_of<2>(const Pressure<2>&, const std::vector<Wall<2>>&);
 template double area_of<3>(const Pressure<3>&, const std::vector<Wall<3>>&);
+template void note_encounter<2>(const Wall<2>&, std::span<const WallPair>, const Vec<2>&, double,
+                                std::vector<Wall<2>::Encounter>&);
+template void note_encounter<3>(const Wall<3>&, std::span<const WallPair>, const Vec<3>&, double,
+                                std::vector<Wall<3>::Encounter>&);
+template double Wall<2>::in_front(int, const Vec<2>&) const;
+template double Wall<3>::in_front(int, const Vec<3>&) const;
 template std::string Wall<2>::defect() const;
 template std::string Wall<3>::defect() const;
 template Wall<2>::Foot Wall<2>::foot_on(const Sheet<2>&, int, const Vec<2>&) const;

@@ -202,6 +202,7 @@ class GrainSystem {
     const std::vector<int> slot_of = store_.sort_if_mixed();
     if (slot_of.empty()) return;
     near_.renumber(slot_of, count(), block_size());
+    renumber_encounters(slot_of);
     meet_grains();
     if constexpr (requires { neighbourhood_.forget(); }) neighbourhood_.forget();
   }
@@ -241,6 +242,7 @@ class GrainSystem {
     const bool one_law = store_.materials().empty();
     const std::vector<int> slot_of = store_.exchange(kept, newcomers);
     near_.renumber(slot_of, count(), block_size());
+    renumber_encounters(slot_of);
     if (store_.materials().empty() != one_law) {
       forces_ = ContactForces<Dim, Law>(setting_.instructions, store_.materials().empty());
       forces_.measure_time(measuring_);
@@ -276,23 +278,14 @@ class GrainSystem {
 
   // ---- The paper's step 5 ----------------------------------------------------------------------
 
-  /// Brings the near list, and with it T, up to date with the grains and walls at time t [s], if it
-  /// no longer holds. Single grains that have left their margins are amended, if that will do.
+  /// Brings the near list, and with it T, up to date with the grains and walls at time t [s].
   void update_triangulation(double t) {
-    const bool walls_hold = near_.listed() && near_.walls_hold(walls_, near_.shift(t));
-    const bool holds = walls_hold && std::all_of(strays_.begin(), strays_.end(),
-                                                 [](const auto& list) { return list.empty(); });
-    // Where lists are not amended, one that holds is too dear to give away.
-    const bool narrow = AmendableNeighbourhood<N, Dim> && near_.worth_narrowing(steps_);
-    if (holds && !narrow) return;
-    const Stopwatch watch;
-    const auto velocity = [&](int slot) { return store_.record(slot).velocity(); };
-    if (narrow || !walls_hold || !amend(t, velocity)) {
-      store_.expect_finite(time());
-      near_.refresh(store_.places(), store_.radius(), velocity, walls_, neighbourhood_, t,
-                    setting_.time_step, steps_);
+    renew_near_list(t);
+    for (const Wall<Dim>& wall : walls_) {
+      if (!wall.front_only) continue;
+      find_encounters();
+      break;
     }
-    times_.refresh += watch.seconds();
   }
 
   GrainStore<Dim, needs> store_;
@@ -330,6 +323,50 @@ class GrainSystem {
     Body<Dim, needs> b{g.position.col(i), g.velocity.col(i), g.radius[i], g.inverse_mass[i], {}};
     if constexpr (needs.spin) b.omega = g.omega.col(i);
     return b;
+  }
+
+  /// Makes the near list anew if it no longer holds. Single grains that have left their margins are
+  /// amended, if that will do.
+  void renew_near_list(double t) {
+    const bool walls_hold = near_.listed() && near_.walls_hold(walls_, near_.shift(t));
+    const bool holds = walls_hold && std::all_of(strays_.begin(), strays_.end(),
+                                                 [](const auto& list) { return list.empty(); });
+    // Where lists are not amended, one that holds is too dear to give away.
+    const bool narrow = AmendableNeighbourhood<N, Dim> && near_.worth_narrowing(steps_);
+    if (holds && !narrow) return;
+    const Stopwatch watch;
+    const auto velocity = [&](int slot) { return store_.record(slot).velocity(); };
+    if (narrow || !walls_hold || !amend(t, velocity)) {
+      store_.expect_finite(time());
+      near_.refresh(store_.places(), store_.radius(), velocity, walls_, neighbourhood_, t,
+                    setting_.time_step, steps_);
+    }
+    times_.refresh += watch.seconds();
+  }
+
+  /// Sees who touches walls that are solid from the front alone, and who passes through them.
+  void find_encounters() {
+    std::vector<std::vector<typename Wall<Dim>::Encounter>> now(walls_.size());
+    for (const auto& block : near_.blocks()) {
+      const std::vector<WallPair>& pairs = block.walls.pairs();
+      for (std::size_t first = 0, end = 0; first < pairs.size(); first = end) {
+        const auto [slot, w, unused] = pairs[first];
+        while (end < pairs.size() && pairs[end].i == slot && pairs[end].wall == w) ++end;
+        if (!walls_[index(w)].front_only) continue;
+        const Record& grain = store_.record(slot);
+        note_encounter<Dim>(walls_[index(w)], {pairs.data() + first, end - first}, grain.position(),
+                            grain.radius(), now[index(w)]);
+      }
+    }
+    for (std::size_t w = 0; w < walls_.size(); ++w) walls_[w].encounters = std::move(now[w]);
+  }
+  /// @param slot_of  new slot of each old one; -1 where the grain has left
+  void renumber_encounters(const std::vector<int>& slot_of) {
+    for (Wall<Dim>& wall : walls_) {
+      for (auto& encounter : wall.encounters) encounter.grain = slot_of[index(encounter.grain)];
+      std::erase_if(wall.encounters, [](const auto& encounter) { return encounter.grain < 0; });
+      std::ranges::sort(wall.encounters, {}, [](const auto& encounter) { return encounter.grain; });
+    }
   }
 
   /// What the contacts with a wall have stored [J].

@@ -244,13 +244,14 @@ class PassageWatch {
                        const std::vector<Wall<Dim>>& walls, std::size_t w,
                        const ContactRules& rules) const {
     const Wall<Dim>& wall = walls[w];
-    if (!wall.pieces() || !rules.may_touch(slot, wall)) return {};
+    if (!wall.pieces() || !rules.may_touch(slot, wall) || wall.lets_through(slot)) return {};
     // Seen from the wall, the grain ends where it is now.
     const Vec<Dim> to = grain.position();
     const Vec<Dim> way = to - wall.carried_along(wall_poses_[w], from);
     bool crosses = false;
     std::vector<int> found;
     wall.for_each_near(to, grain.radius() + way.norm(), found, [&](int piece) {
+      if (wall.front_only && wall.in_front(piece, to - way) < 0) return;
       crosses =
           crosses ||
           missed_overlap([&](double s) { return wall.foot(piece, to - (1 - s) * way).distance; },

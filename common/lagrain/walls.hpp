@@ -156,6 +156,9 @@ struct Wall {
   /// The surface runs with this velocity, as far as that lies in it, while the wall stays [m/s].
   Vec<Dim> belt = Vec<Dim>::Zero();
   double until = std::numeric_limits<double>::infinity();  ///< from then on it is gone [s]
+  /// Of straight pieces with a front: whoever is behind where it begins to touch the wall passes
+  /// through, until it touches no more. Whoever is in front finds it solid for as long.
+  bool front_only = false;
 
   /// What follows is kept by the simulation.
   /// @{
@@ -170,6 +173,12 @@ struct Wall {
   bool joined = false;  ///< whether it may meet other walls, or itself, see join_walls
   bool uneven = false;  ///< whether the velocity of its surface may differ from place to place
   double seam = 0;      ///< to which joints of that surface are known [m]
+  /// Who touches a wall that is solid from the front alone, and whether it passes.
+  struct Encounter {
+    int grain;    ///< by slot
+    bool passes;  ///< whether it came from behind
+  };
+  std::vector<Encounter> encounters;  ///< sorted by grain
   /// @}
 
   /// A fixed half-space.
@@ -250,6 +259,14 @@ struct Wall {
     return std::visit([&](const auto& p) { return p.feature(in_own_frame(foot), reach); },
                       sheet->piece(piece));
   }
+  /// Whether the grain in a slot passes through it, having come from behind.
+  bool lets_through(int slot) const {
+    const auto found = std::lower_bound(encounters.begin(), encounters.end(), slot,
+                                        [](const Encounter& e, int s) { return e.grain < s; });
+    return found != encounters.end() && found->grain == slot && found->passes;
+  }
+  /// How far in front of a piece's nearest point a place is, along its front [m]; negative behind.
+  double in_front(int piece, const Vec<Dim>& x) const;
   /// Ends or corners of all of its pieces as they are now [m]; empty for one without an end.
   std::vector<Vec<Dim>> corners() const;
   /// The box around it as it was made [m]; empty for one without an end.
@@ -405,6 +422,14 @@ struct WallPair {
   int piece = 0;  ///< of the wall
   auto operator<=>(const WallPair&) const = default;
 };
+
+/// Notes a grain that touches a wall which is solid from the front alone. If it has begun to, the
+/// nearest piece says whether it comes from behind; of equally near ones, that which it faces most.
+/// @param pieces  of the wall, near the grain at x [m]
+/// @param now     gets the encounter, if there is one
+template <int Dim>
+void note_encounter(const Wall<Dim>& wall, std::span<const WallPair> pieces, const Vec<Dim>& x,
+                    double radius, std::vector<typename Wall<Dim>::Encounter>& now);
 
 /// Finds which walls may meet others, with which they are one surface then: at least one of two has
 /// an end, and their boxes touch, or one of the two moves. A wall of several pieces meets itself.

@@ -127,6 +127,7 @@ inline constexpr Key kOpen{"open"};
 inline constexpr Key kOpenings{"openings"};
 inline constexpr Key kSide{"side"};
 inline constexpr Key kBelt{"belt", kSpeed};
+inline constexpr Key kSolid{"solid"};
 inline constexpr Key kUntil{"until", kTime, Range::positive};
 
 inline constexpr Key kMotion{"motion"};
@@ -187,6 +188,9 @@ enum class MotionType { steady, shake, path, piston };
 inline constexpr std::array kMotionWords{
     Word<MotionType>{"steady", MotionType::steady}, Word<MotionType>{"shake", MotionType::shake},
     Word<MotionType>{"path", MotionType::path}, Word<MotionType>{"piston", MotionType::piston}};
+
+/// From where a thin wall is solid.
+inline constexpr std::array kSolidWords{Word<bool>{"both", false}, Word<bool>{"front", true}};
 
 /// How a wall can turn; a wall without it stays upright.
 enum class TurningType { steady, swing };

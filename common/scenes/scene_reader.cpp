@@ -529,6 +529,8 @@ class Reader {
     const std::string name = s.text(keys::kName, "wall " + std::to_string(index + 1));
     const int material = material_of(s, false);
     Wall<Dim> wall = read_shape(s, name);
+    wall.front_only = s.word<bool>(keys::kSolid, detail::kSolidWords, wall.front_only);
+    if (const std::string defect = wall.defect(); !defect.empty()) s.fail(keys::kSolid, defect);
     if (s.has(keys::kTurning)) read_turning(s.table(keys::kTurning), wall);
     add_wall(s, std::move(wall), material);
   }

@@ -309,6 +309,7 @@ class Writer {
                           },
                           [&](const Sheet<Dim>& sheet) { write_sheet(wall.home, sheet); }},
                wall.shape);
+    if (wall.front_only) out_.add(keys::kSolid, text_of(detail::kSolidWords, wall.front_only));
     write_motion(wall);
     write_turning(wall);
     if (wall.runs()) out_.add(keys::kBelt, wall.belt);
