@@ -77,7 +77,7 @@ void join_walls(std::vector<Wall<Dim>>& walls) {
       partners[a].push_back(b);
       partners[b].push_back(a);
     }
-    walls[a].joined = !partners[a].empty() || walls[a].piece_count() > 1;
+    walls[a].joined = !partners[a].empty() || walls[a].piece_count() > 1 || walls[a].front_only;
     walls[a].uneven = walls[a].turns() || walls[a].runs();
   }
   // Walls that hang together share one seam, so that each of them judges a joint alike.
@@ -175,6 +175,8 @@ template <int Dim>
 typename Wall<Dim>::Foot foot_on_surface(const Wall<Dim>* walls, std::span<const WallPair> pairs,
                                          std::size_t own_place, const Vec<Dim>& x, double reach) {
   const WallPair& own_pair = pairs[own_place];
+  constexpr double kFar = std::numeric_limits<double>::max();
+  if (walls[own_pair.wall].lets_through(own_pair.i)) return {kFar, Vec<Dim>::UnitX()};
   auto own = walls[own_pair.wall].foot(own_pair.piece, x);
   if (own.distance > reach) return own;
   const double seam = walls[own_pair.wall].seam;
@@ -185,7 +187,8 @@ typename Wall<Dim>::Foot foot_on_surface(const Wall<Dim>* walls, std::span<const
                     walls[pair.wall].feature(pair.piece, point, seam)});
   };
   const auto consider = [&](std::size_t k) {
-    if (!walls[pairs[k].wall].joined) return;
+    const Wall<Dim>& wall = walls[pairs[k].wall];
+    if (!wall.joined || wall.lets_through(own_pair.i)) return;
     const auto foot = walls[pairs[k].wall].foot(pairs[k].piece, x);
     if (foot.distance <= own.distance + 2 * seam) add(pairs[k], foot);
   };
@@ -196,7 +199,7 @@ typename Wall<Dim>::Foot foot_on_surface(const Wall<Dim>* walls, std::span<const
   if (list.empty()) return own;
   add(own_pair, own);
   if (is_contact<Dim>(list, list.size() - 1, walls, seam)) return own;
-  return {std::numeric_limits<double>::max(), own.normal};
+  return {kFar, own.normal};
 }
 
 template Wall<2>::Foot foot_on_surface<2>(const Wall<2>*, std::span<const WallPair>, std::size_t,
@@ -245,6 +248,17 @@ Turning<Dim> turning_at(const Upright&, double) {
   return {SpinVec<Dim>::Zero(), Vec<Dim>::Zero()};
 }
 
+/// How fast it ever turns [rad/s].
+template <int Dim>
+double largest_rate(const Turn<Dim>& turn) {
+  return turn.rate;
+}
+template <int Dim>
+double largest_rate(const Swing<Dim>& swing) {
+  return 2 * std::numbers::pi * swing.frequency * swing.amplitude;
+}
+double largest_rate(const Upright&) { return 0; }
+
 /// Whether turning about an axis through the wall's point leaves all of its pieces where they are.
 template <int Dim>
 bool is_round(const Sheet<Dim>& sheet, const SpinVec<Dim>& axis) {
@@ -269,6 +283,20 @@ Eigen::Matrix3d rotation(const SpinVec<3>& axis, double angle) {
 
 template <int Dim>
 std::string Wall<Dim>::defect() const {
+  if (front_only) {
+    const auto has_front = [](const WallPiece<Dim>& piece) {
+      return std::visit(
+          [](const auto& p) {
+            return requires { p.front(); };
+          },
+          piece);
+    };
+    if (!pieces()) return "it has one side; only what is thin is solid from its front or both";
+    if (!std::ranges::all_of(pieces()->pieces(), has_front)) {
+      return Dim == 2 ? "an arc is solid from both sides; give points"
+                      : "a round piece is solid from both sides; give plates";
+    }
+  }
   if (const auto* path = std::get_if<Path<Dim>>(&motion)) {
     if (std::string why = defect_of(*path); !why.empty()) return why;
   }
@@ -276,19 +304,72 @@ std::string Wall<Dim>::defect() const {
   if (yields()) return "a piston does not turn";
   const Turning<Dim> now = std::visit([](const auto& m) { return turning_at<Dim>(m, 0); }, turning);
   if (!(std::abs(now.axis.squaredNorm() - 1) < 1e-9)) return "it turns about no axis";
-  const std::string give = Dim == 2 ? "; give segments" : "; give plates";
-  if (const auto* plane = std::get_if<HalfSpace<Dim>>(&shape)) {
-    bool about_normal = false;
-    if constexpr (Dim == 3) about_normal = now.axis.cross(plane->normal).norm() < kSeam;
-    if (!about_normal) return "what has no end turns about its normal alone" + give;
-  }
-  if constexpr (Dim == 3) {
+  constexpr double kFastest = 1e100;  // its square, and the way in any time, is a double
+  const double rate = std::visit([](const auto& m) { return largest_rate(m); }, turning);
+  if (!(std::abs(rate) < kFastest)) return "it turns faster than numbers tell; slow it down";
+  const auto* plane = std::get_if<HalfSpace<Dim>>(&shape);
+  if constexpr (Dim == 2) {
+    if (plane) return "a line without an end does not turn; give from and to, or points";
+  } else {
+    const std::string give = "; give plates";
+    if (plane && !(now.axis.cross(plane->normal).norm() < kSeam)) {
+      return "what has no end turns about its normal alone" + give;
+    }
     const auto* round = std::get_if<Cylinder<Dim>>(&shape);
     if (round && !round->axis.isZero(0) && !(now.axis.cross(round->axis).norm() < kSeam)) {
       return "what has no end turns about its axis alone" + give;
     }
   }
   return "";
+}
+
+template <int Dim>
+std::string pressure_defect(const std::vector<Wall<Dim>>& walls, const Wall<Dim>& wall) {
+  const auto* piston = std::get_if<Piston<Dim>>(&wall.motion);
+  if (!piston || !piston->pressure) return "";
+  const Pressure<Dim>& pressure = *piston->pressure;
+  if (!(pressure.value > 0 && std::isfinite(pressure.value))) return "a pressure is positive";
+  if (!(pressure.depth > 0 && std::isfinite(pressure.depth))) return "a depth is positive";
+  const auto* face = std::get_if<HalfSpace<Dim>>(&wall.shape);
+  if (!face) return "a piston that holds a pressure has point and normal, along which it presses";
+  std::vector<Vec<Dim>> normals{face->normal};
+  std::vector<std::string> names{wall.name};
+  for (const auto& pair : pressure.between) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (pair[k] < 0 || pair[k] >= static_cast<int>(walls.size())) {
+        return "it presses between walls that are not there";
+      }
+      const Wall<Dim>& side = walls[static_cast<std::size_t>(pair[k])];
+      const auto* plane = std::get_if<HalfSpace<Dim>>(&side.shape);
+      if (!plane) return "wall " + side.name + " is no flat wall with point and normal";
+      if (k == 1) {
+        if (pair[0] == pair[1]) return "it presses between wall " + side.name + " and itself";
+        const Vec<Dim>& other = normals.back();
+        if (!((plane->normal - plane->normal.dot(other) * other).norm() < kSeam)) {
+          return "walls " + names.back() + " and " + side.name + " are not parallel";
+        }
+        continue;
+      }
+      for (std::size_t n = 0; n < normals.size(); ++n) {
+        if (std::abs(plane->normal.dot(normals[n])) < kSeam) continue;
+        return "wall " + side.name + " is not at a right angle to wall " + names[n];
+      }
+      normals.push_back(plane->normal);
+      names.push_back(side.name);
+    }
+  }
+  return "";
+}
+
+template <int Dim>
+double area_of(const Pressure<Dim>& pressure, const std::vector<Wall<Dim>>& walls) {
+  double area = pressure.depth;
+  for (const auto& [a, b] : pressure.between) {
+    const Wall<Dim>& side = walls[static_cast<std::size_t>(a)];
+    const Vec<Dim> across = walls[static_cast<std::size_t>(b)].point - side.point;
+    area *= std::abs(across.dot(std::get<HalfSpace<Dim>>(side.shape).normal));
+  }
+  return area;
 }
 
 template <int Dim>
@@ -301,6 +382,40 @@ typename Wall<Dim>::Foot Wall<Dim>::foot_on(const Sheet<Dim>& sheet, int piece,
   if (distance > 0) return {distance, away / distance};
   // A centre exactly on the wall is pushed out along a normal of it.
   return {0, frame_ * std::visit([&](const auto& q) { return q.normal_at(own); }, p)};
+}
+
+template <int Dim>
+double Wall<Dim>::in_front(int piece, const Vec<Dim>& x) const {
+  const Vec<Dim> own = in_own_frame(x);
+  return std::visit(
+      [&](const auto& p) -> double {
+        if constexpr (requires { p.front(); }) return (own - p.nearest(own)).dot(p.front());
+        return 0;
+      },
+      pieces()->piece(piece));
+}
+
+template <int Dim>
+void note_encounter(const Wall<Dim>& wall, std::span<const WallPair> pieces, const Vec<Dim>& x,
+                    double radius, std::vector<typename Wall<Dim>::Encounter>& now) {
+  double least = radius, most = -1;
+  bool passes = false;
+  for (const WallPair& pair : pieces) {
+    const double distance = wall.foot(pair.piece, x).distance;
+    if (!(distance < radius) || distance > least + wall.seam) continue;
+    const double side = wall.in_front(pair.piece, x);
+    if (distance < least - wall.seam || std::abs(side) > most) {
+      most = std::abs(side);
+      passes = side < 0;
+    }
+    least = std::min(least, distance);
+  }
+  if (most < 0) return;
+  const int slot = pieces.front().i;
+  const auto before = std::ranges::lower_bound(
+      wall.encounters, slot, {}, [](const auto& encounter) { return encounter.grain; });
+  const bool goes_on = before != wall.encounters.end() && before->grain == slot;
+  now.push_back({slot, goes_on ? before->passes : passes});
 }
 
 template <int Dim>
@@ -330,6 +445,16 @@ std::vector<Vec<Dim>> Wall<Dim>::corners() const {
   return list;
 }
 
+template std::string pressure_defect<2>(const std::vector<Wall<2>>&, const Wall<2>&);
+template std::string pressure_defect<3>(const std::vector<Wall<3>>&, const Wall<3>&);
+template double area_of<2>(const Pressure<2>&, const std::vector<Wall<2>>&);
+template double area_of<3>(const Pressure<3>&, const std::vector<Wall<3>>&);
+template void note_encounter<2>(const Wall<2>&, std::span<const WallPair>, const Vec<2>&, double,
+                                std::vector<Wall<2>::Encounter>&);
+template void note_encounter<3>(const Wall<3>&, std::span<const WallPair>, const Vec<3>&, double,
+                                std::vector<Wall<3>::Encounter>&);
+template double Wall<2>::in_front(int, const Vec<2>&) const;
+template double Wall<3>::in_front(int, const Vec<3>&) const;
 template std::string Wall<2>::defect() const;
 template std::string Wall<3>::defect() const;
 template Wall<2>::Foot Wall<2>::foot_on(const Sheet<2>&, int, const Vec<2>&) const;

@@ -196,8 +196,7 @@ Scene<2> gas_in_box(int row, double side) {
   scene.fills = {{.name = "gas",
                   .count = row * row,
                   .radius = kR,
-                  .low = {0, 0},
-                  .high = {side, side},
+                  .region = {{0, 0}, {side, side}},
                   .arrangement = Arrangement::random,
                   .random_speed = 1}};
   return scene;

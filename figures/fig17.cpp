@@ -366,7 +366,7 @@ Diagram collapse_panel(Report& report, const FigureOptions& options) {
   scene.audit = false;
   scene.largest_overlap = 0.5;  // a soft heap is measured, too
   scene.fills[0].count = count;
-  scene.fills[0].high = {count * 0.25e-3, 1.2};  // about as slender as the scene's own [m]
+  scene.fills[0].region.high = {count * 0.25e-3, 1.2};  // about as slender as the scene's own [m]
   if (options.quick) scene.duration *= 0.5;
   Diagram diagram{"(a) collapse of " + std::to_string(count) + " discs",
                   {.x = {.label = "from the wall [m]", .low = 0},

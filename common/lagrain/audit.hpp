@@ -3,10 +3,11 @@
 /// @file
 /// Checks that the near list holds every contact, by an independent search.
 
+#include <lagrain/contact_rules.hpp>
 #include <lagrain/contact_search.hpp>
 #include <lagrain/neighbourhood.hpp>
-#include <lagrain/pinned_grains.hpp>
 #include <lagrain/state.hpp>
+#include <lagrain/walls.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -30,24 +31,48 @@ class ContactAudit {
     visit("missed", missed_);
   }
 
-  /// @param near    sorted pairs that claim to hold every contact at centres x [m]
-  /// @param pinned  grains that touch no other one of them
+  /// @param near   sorted pairs that claim to hold every contact at centres x [m]
+  /// @param rules  which pairs can be contacts
   void check(const Columns<Dim>& x, const Eigen::VectorXd& radius, const std::vector<Pair>& near,
-             const PinnedGrains& pinned = {}) {
+             const ContactRules& rules = {}) {
     touching_ = search_.find(x, radius);
-    pinned.drop_from(touching_);
+    rules.drop_from(touching_);
     ++checks_;
-    contacts_ += static_cast<std::int64_t>(touching_.size());
-    lacking_.clear();
-    std::set_difference(touching_.begin(), touching_.end(), near.begin(), near.end(),
-                        std::back_inserter(lacking_));
-    missed_ += static_cast<std::int64_t>(lacking_.size());
+    compare(touching_, near);
+  }
+
+  /// The same for contacts with walls, each piece for itself. Every grain is held against every
+  /// piece, in which there is nothing to get wrong.
+  /// @param near  sorted pairs that claim to hold every piece that a grain reaches
+  void check_walls(const Columns<Dim>& x, const Eigen::VectorXd& radius,
+                   const std::vector<Wall<Dim>>& walls, const std::vector<WallPair>& near,
+                   const ContactRules& rules = {}) {
+    at_walls_.clear();
+    for (int i = 0; i < static_cast<int>(radius.size()); ++i) {
+      for (int w = 0; w < static_cast<int>(walls.size()); ++w) {
+        const Wall<Dim>& wall = walls[static_cast<std::size_t>(w)];
+        if (wall.gone || !rules.may_touch(i, wall)) continue;
+        for (int piece = 0; piece < wall.piece_count(); ++piece) {
+          if (wall.foot(piece, x.col(i)).distance < radius[i]) at_walls_.push_back({i, w, piece});
+        }
+      }
+    }
+    compare(at_walls_, near);
   }
 
  private:
+  template <class P>
+  void compare(const std::vector<P>& touching, const std::vector<P>& near) {
+    contacts_ += static_cast<std::int64_t>(touching.size());
+    std::vector<P> lacking;
+    std::set_difference(touching.begin(), touching.end(), near.begin(), near.end(),
+                        std::back_inserter(lacking));
+    missed_ += static_cast<std::int64_t>(lacking.size());
+  }
+
   ContactSearch<Dim> search_;
-  std::vector<Pair> touching_;  ///< contacts found from nothing
-  std::vector<Pair> lacking_;   ///< contacts that are not in the near list
+  std::vector<Pair> touching_;      // contacts found from nothing
+  std::vector<WallPair> at_walls_;  // the same with walls
   std::int64_t checks_ = 0;
   std::int64_t contacts_ = 0;
   std::int64_t missed_ = 0;

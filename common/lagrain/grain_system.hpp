@@ -8,6 +8,7 @@
 #include <lagrain/check.hpp>
 #include <lagrain/contact_forces.hpp>
 #include <lagrain/contact_law.hpp>
+#include <lagrain/contact_rules.hpp>
 #include <lagrain/grain_store.hpp>
 #include <lagrain/grains.hpp>
 #include <lagrain/law_table.hpp>
@@ -75,6 +76,18 @@ class GrainSystem {
       }
     });
     sort_pairs(pairs, count());
+    return pairs;
+  }
+  /// The listed pairs of grains and walls, sorted: the same for contacts with walls.
+  std::vector<WallPair> near_wall_pairs() const {
+    std::vector<WallPair> pairs;
+    for (const auto& block : near_.blocks()) {
+      for (WallPair pair : block.walls.pairs()) {
+        pair.i = store_.number(pair.i);
+        pairs.push_back(pair);
+      }
+    }
+    std::sort(pairs.begin(), pairs.end());
     return pairs;
   }
   std::size_t near_count() const { return near_.pair_count(); }  ///< how many pairs are listed
@@ -215,6 +228,7 @@ class GrainSystem {
     const std::vector<int> slot_of = store_.sort_if_mixed();
     if (slot_of.empty()) return;
     near_.renumber(slot_of, count(), block_size());
+    renumber_encounters(slot_of);
     meet_grains();
     if constexpr (requires { neighbourhood_.forget(); }) neighbourhood_.forget();
   }
@@ -222,6 +236,7 @@ class GrainSystem {
   /// Brings the walls to time t [s], a step dt [s] after the last call. A wall that goes takes
   /// along what the contacts with it have stored.
   void advance_walls(double t, double dt) {
+    update_loads(walls_);
     for (std::size_t w = 0; w < walls_.size(); ++w) {
       if (!walls_[w].gone && t >= walls_[w].until) {
         const double taken = elastic_energy_at(w);
@@ -290,6 +305,7 @@ class GrainSystem {
     const bool one_law = store_.materials().empty();
     const std::vector<int> slot_of = store_.exchange(kept, newcomers);
     near_.renumber(slot_of, count(), block_size());
+    renumber_encounters(slot_of);
     if (store_.materials().empty() != one_law) {
       forces_ = ContactForces<Dim, Law>(setting_.instructions, store_.materials().empty());
       forces_.measure_time(measuring_);
@@ -320,29 +336,20 @@ class GrainSystem {
   void expect_no_passage(double t) {
     watch_.expect_no_passage(
         count(), [&](int slot) -> const Record& { return store_.record(slot); },
-        [&](int slot) { return store_.id(slot); }, walls_, t,
+        [&](int slot) { return store_.id(slot); }, walls_, near_.rules(), t,
         near_.shift(t) - near_.shift(watch_.since()), setting_.time_step);
   }
 
   // ---- The paper's step 5 ----------------------------------------------------------------------
 
-  /// Brings the near list, and with it T, up to date with the grains and walls at time t [s], if it
-  /// no longer holds. Single grains that have left their margins are amended, if that will do.
+  /// Brings the near list, and with it T, up to date with the grains and walls at time t [s].
   void update_triangulation(double t) {
-    const bool walls_hold = near_.listed() && near_.walls_hold(walls_, near_.shift(t));
-    const bool holds = walls_hold && std::all_of(strays_.begin(), strays_.end(),
-                                                 [](const auto& list) { return list.empty(); });
-    // Where lists are not amended, one that holds is too dear to give away.
-    const bool narrow = AmendableNeighbourhood<N, Dim> && near_.worth_narrowing(steps_);
-    if (holds && !narrow) return;
-    const Stopwatch watch;
-    const auto velocity = [&](int slot) { return store_.record(slot).velocity(); };
-    if (narrow || !walls_hold || !amend(t, velocity)) {
-      store_.expect_finite(time());
-      near_.refresh(store_.places(), store_.radius(), velocity, walls_, neighbourhood_, t,
-                    setting_.time_step, steps_);
+    renew_near_list(t);
+    for (const Wall<Dim>& wall : walls_) {
+      if (!wall.front_only) continue;
+      find_encounters();
+      break;
     }
-    times_.refresh += watch.seconds();
   }
 
   GrainStore<Dim, needs> store_;
@@ -408,6 +415,50 @@ class GrainSystem {
     update_triangulation(time());
   }
 
+  /// Makes the near list anew if it no longer holds. Single grains that have left their margins are
+  /// amended, if that will do.
+  void renew_near_list(double t) {
+    const bool walls_hold = near_.listed() && near_.walls_hold(walls_, near_.shift(t));
+    const bool holds = walls_hold && std::all_of(strays_.begin(), strays_.end(),
+                                                 [](const auto& list) { return list.empty(); });
+    // Where lists are not amended, one that holds is too dear to give away.
+    const bool narrow = AmendableNeighbourhood<N, Dim> && near_.worth_narrowing(steps_);
+    if (holds && !narrow) return;
+    const Stopwatch watch;
+    const auto velocity = [&](int slot) { return store_.record(slot).velocity(); };
+    if (narrow || !walls_hold || !amend(t, velocity)) {
+      store_.expect_finite(time());
+      near_.refresh(store_.places(), store_.radius(), velocity, walls_, neighbourhood_, t,
+                    setting_.time_step, steps_);
+    }
+    times_.refresh += watch.seconds();
+  }
+
+  /// Sees who touches walls that are solid from the front alone, and who passes through them.
+  void find_encounters() {
+    std::vector<std::vector<typename Wall<Dim>::Encounter>> now(walls_.size());
+    for (const auto& block : near_.blocks()) {
+      const std::vector<WallPair>& pairs = block.walls.pairs();
+      for (std::size_t first = 0, end = 0; first < pairs.size(); first = end) {
+        const auto [slot, w, unused] = pairs[first];
+        while (end < pairs.size() && pairs[end].i == slot && pairs[end].wall == w) ++end;
+        if (!walls_[index(w)].front_only) continue;
+        const Record& grain = store_.record(slot);
+        note_encounter<Dim>(walls_[index(w)], {pairs.data() + first, end - first}, grain.position(),
+                            grain.radius(), now[index(w)]);
+      }
+    }
+    for (std::size_t w = 0; w < walls_.size(); ++w) walls_[w].encounters = std::move(now[w]);
+  }
+  /// @param slot_of  new slot of each old one; -1 where the grain has left
+  void renumber_encounters(const std::vector<int>& slot_of) {
+    for (Wall<Dim>& wall : walls_) {
+      for (auto& encounter : wall.encounters) encounter.grain = slot_of[index(encounter.grain)];
+      std::erase_if(wall.encounters, [](const auto& encounter) { return encounter.grain < 0; });
+      std::ranges::sort(wall.encounters, {}, [](const auto& encounter) { return encounter.grain; });
+    }
+  }
+
   /// What the contacts with a wall have stored [J].
   double elastic_energy_at(std::size_t wall) {
     store_.outdate();
@@ -436,8 +487,10 @@ class GrainSystem {
 
   /// The grains have come to lie in other slots, or they are others.
   void meet_grains() {
-    near_.pin(PinnedGrains(count(),
-                           [&](int slot) { return store_.record(slot).at[Record::kInverseMass]; }));
+    near_.set_rules(ContactRules(
+        PinnedGrains(count(),
+                     [&](int slot) { return store_.record(slot).at[Record::kInverseMass]; }),
+        store_.materials(), laws_.apart()));
     driven_.clear();
     for (int slot = 0; slot < count(); ++slot) {
       const Record& grain = store_.record(slot);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// `LawTable` gives the contact law for each pair of materials.
+/// `LawTable` gives the contact law for each pair of materials, or says that they do not touch.
 
 #include <lagrain/check.hpp>
 
@@ -11,6 +11,27 @@
 #include <vector>
 
 namespace lagrain {
+
+/// Pairs of materials that do not touch: what is made of them goes through each other.
+class MaterialsApart {
+ public:
+  /// From now on two materials do not touch.
+  void add(std::size_t a, std::size_t b) {
+    apart_.resize(kMaterials * kMaterials);
+    apart_[a * kMaterials + b] = apart_[b * kMaterials + a] = true;
+  }
+  /// From now on no two materials touch.
+  void add_all() { apart_.assign(kMaterials * kMaterials, true); }
+  /// Whether two materials do not touch.
+  bool operator()(std::size_t a, std::size_t b) const {
+    return !apart_.empty() && apart_[a * kMaterials + b];
+  }
+  bool empty() const { return apart_.empty(); }  ///< whether all materials touch
+
+ private:
+  static constexpr std::size_t kMaterials = 256;  // a grain keeps its material in one byte
+  std::vector<bool> apart_;                       // empty: no pair is apart
+};
 
 /// Symmetric table of laws, one for each pair of materials. A table of one law holds for all
 /// materials, however many there are.
@@ -31,6 +52,16 @@ class LawTable {
     laws_[index(static_cast<std::size_t>(a), static_cast<std::size_t>(b))] = law;
     laws_[index(static_cast<std::size_t>(b), static_cast<std::size_t>(a))] = law;
   }
+  /// Two materials do not touch from now on, whatever their law. In a table of one law nothing
+  /// touches anything then.
+  void set_apart(int a, int b) {
+    if (one_law()) {
+      apart_.add_all();
+    } else {
+      apart_.add(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
+    }
+  }
+  const MaterialsApart& apart() const { return apart_; }  ///< pairs that do not touch
   /// The law between two materials.
   const Law& between(std::size_t a, std::size_t b) const {
     return one_law() ? laws_.front() : laws_[index(a, b)];
@@ -55,6 +86,7 @@ class LawTable {
 
   std::size_t materials_ = 0;
   std::vector<Law> laws_;
+  MaterialsApart apart_;
 };
 
 }  // namespace lagrain

@@ -5,10 +5,10 @@
 /// and knows when it has to be made anew.
 
 #include <lagrain/check.hpp>
+#include <lagrain/contact_rules.hpp>
 #include <lagrain/contact_search.hpp>
 #include <lagrain/neighbourhood.hpp>
 #include <lagrain/pair_table.hpp>
-#include <lagrain/pinned_grains.hpp>
 #include <lagrain/state.hpp>
 #include <lagrain/walls.hpp>
 
@@ -104,9 +104,9 @@ class NearList {
     listed_ = false;
   }
 
-  /// Says which grains, by slot, nothing moves. Two of them are not listed as a pair, nor one of
-  /// them with a wall that no force moves.
-  void pin(PinnedGrains pinned) { pinned_ = std::move(pinned); }
+  /// Says which pairs, by slot, are contacts where they overlap. The others are not listed.
+  void set_rules(ContactRules rules) { rules_ = std::move(rules); }
+  const ContactRules& rules() const { return rules_; }  ///< by slot
 
   /// How far the frame has moved since the last refresh, at time t [s].
   Vec<Dim> shift(double t) const { return (t - time_) * drift_; }
@@ -142,7 +142,7 @@ class NearList {
     margin_.resize(size_);
     for (int i = 0; i < size_; ++i) margin_[i] = wanted_margin(radius[i], velocity(i), dt);
     neighbourhood.near_pairs(x, radius, margin_, found_);
-    pinned_.drop_from(found_);
+    rules_.drop_from(found_);
     list_pairs();
     list_walls(x, radius, all_walls, dt);
     stay_.resize(index(size_));
@@ -181,7 +181,7 @@ class NearList {
         !neighbourhood.pairs_of(strays, place_here, radius, margin_, found_)) {
       return false;
     }
-    pinned_.drop_from(found_);
+    rules_.drop_from(found_);
     std::erase_if(found_, [&](const Pair& pair) { return surely_listed(pair, radius); });
     for (const int i : strays) stay(i, place_here(i));
     bool ends_change = false;
@@ -198,7 +198,7 @@ class NearList {
     if (ends_change) list_ends();
     for (const int i : strays) {
       for (std::size_t w = 0; w < all_walls.size(); ++w) {
-        if (!may_touch(i, all_walls[w])) continue;
+        if (!rules_.may_touch(i, all_walls[w])) continue;
         // In the frame at the last refresh, and with the wall as it was then.
         listed_walls_[w].for_each_near(stay_[index(i)].centre,
                                        radius[i] + margin_[i] + wall_reach(w), near_pieces_,
@@ -465,9 +465,6 @@ class NearList {
     table.assign(std::move(keys), memories);
   }
 
-  /// Whether a force can move the grain or the wall.
-  bool may_touch(int slot, const Wall<Dim>& wall) const { return wall.yields() || !pinned_[slot]; }
-
   /// How far beyond a grain and its margin a piece of wall w is listed [m]: what a contact may be
   /// left to is listed as well, see contact_foot.
   double wall_reach(std::size_t w) const { return wall_margin_[w] + 2 * listed_walls_[w].seam; }
@@ -562,7 +559,7 @@ class NearList {
     std::sort(listed.begin(), listed.end());
     ContactSearch<Dim> search;
     for (const Pair& pair : search.find(centre, radius + margin_)) {
-      if (pinned_.both(pair)) continue;
+      if (!rules_.may_touch(pair)) continue;
       if (std::binary_search(listed.begin(), listed.end(), pair)) continue;
       defects.push_back("slots " + std::to_string(pair.i) + " and " + std::to_string(pair.j) +
                         " are within reach and not listed");
@@ -574,7 +571,7 @@ class NearList {
     for (std::size_t w = 0; w < all_walls.size(); ++w) {
       for (const Block& block : blocks_) {
         for (int i = block.first_slot; i < block.end_slot; ++i) {
-          if (!may_touch(i, all_walls[w]) || listed_walls_[w].gone) continue;
+          if (!rules_.may_touch(i, all_walls[w]) || listed_walls_[w].gone) continue;
           const double margin = (margin_[i] + wall_margin_[w]) * kHair;
           for (int piece = 0; piece < all_walls[w].piece_count(); ++piece) {
             // Where the wall was when it was listed.
@@ -608,7 +605,7 @@ class NearList {
       wall.for_each_within(
           x, [&](int i) { return radius[i] + margin_[i] + reach; },
           [&](int i, int piece) {
-            if (may_touch(i, wall)) found_walls_.push_back({i, static_cast<int>(w), piece});
+            if (rules_.may_touch(i, wall)) found_walls_.push_back({i, static_cast<int>(w), piece});
           });
     }
     std::sort(found_walls_.begin(), found_walls_.end());
@@ -635,7 +632,7 @@ class NearList {
   std::vector<Block> blocks_;
   std::size_t across_ = 0;  // pairs across blocks
   bool listed_ = false;
-  PinnedGrains pinned_;                // by slot
+  ContactRules rules_;                 // by slot
   double time_ = 0;                    // of the last refresh [s]
   Vec<Dim> drift_ = Vec<Dim>::Zero();  // velocity of the frame [m/s]
   Eigen::VectorXd margin_;             // of each grain, around its centre [m]

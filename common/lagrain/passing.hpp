@@ -13,6 +13,7 @@
 /// are looked at one by one.
 
 #include <lagrain/check.hpp>
+#include <lagrain/contact_rules.hpp>
 #include <lagrain/contact_search.hpp>
 #include <lagrain/vec.hpp>
 #include <lagrain/walls.hpp>
@@ -91,16 +92,17 @@ class PassageWatch {
   /// @param count      number of grains
   /// @param record     record(slot), as the grains are now
   /// @param number     number(slot) of a grain
+  /// @param rules      who touches whom, by slot
   /// @param t          time [s]
   /// @param frame_way  what the frame has moved by meanwhile [m]
   /// @param dt         time step [s]
   /// @throws SimulationError that names the two, the place and the time step that would do
   template <class RecordOf, class NumberOf>
   void expect_no_passage(int count, RecordOf&& record, NumberOf&& number,
-                         const std::vector<Wall<Dim>>& walls, double t, const Vec<Dim>& frame_way,
-                         double dt) {
+                         const std::vector<Wall<Dim>>& walls, const ContactRules& rules, double t,
+                         const Vec<Dim>& frame_way, double dt) {
     if (!std::isfinite(slow_)) return;
-    Passage passage = find(count, record, walls, t - since_, frame_way);
+    Passage passage = find(count, record, walls, rules, t - since_, frame_way);
     for (auto& list : long_ways_) list.clear();
     remember(walls, t);
     if (passage.slot < 0) return;
@@ -141,8 +143,8 @@ class PassageWatch {
   }
 
   template <class RecordOf>
-  Passage find(int count, RecordOf&& record, const std::vector<Wall<Dim>>& walls, double tau,
-               const Vec<Dim>& frame_way) const {
+  Passage find(int count, RecordOf&& record, const std::vector<Wall<Dim>>& walls,
+               const ContactRules& rules, double tau, const Vec<Dim>& frame_way) const {
     // To second order, for a grain that is not fast.
     const auto start = [&](int slot) -> Vec<Dim> {
       return record(slot).position() - tau * record(slot).velocity();
@@ -152,7 +154,10 @@ class PassageWatch {
     const auto look_at = [&](const LongWay& way, int other,
                              const Vec<Dim>& others_from) -> Passage {
       const auto& grain = record(way.slot);
-      if (other == way.slot || !crosses(grain, way.from, record(other), others_from)) return {};
+      if (other == way.slot || !rules.may_touch({way.slot, other}) ||
+          !crosses(grain, way.from, record(other), others_from)) {
+        return {};
+      }
       const double length =
           (grain.position() - way.from - record(other).position() + others_from).norm();
       const bool other_is_faster =
@@ -174,14 +179,14 @@ class PassageWatch {
     }
     for (const auto& [slot, from] : fast) {
       for (std::size_t w = 0; w < walls.size(); ++w) {
-        Passage passage = through_wall(slot, record(slot), from, walls, w);
+        Passage passage = through_wall(slot, record(slot), from, walls, w, rules);
         if (passage.slot >= 0) return passage;
       }
     }
     for (std::size_t w = 0; w < walls.size(); ++w) {
       if (!walls[w].pieces() || walls[w].way_since(wall_poses_[w], frame_way) <= slow_) continue;
       for (int slot = 0; slot < count; ++slot) {
-        Passage passage = through_wall(slot, record(slot), start(slot), walls, w);
+        Passage passage = through_wall(slot, record(slot), start(slot), walls, w, rules);
         if (passage.slot >= 0) return passage;
       }
     }
@@ -223,14 +228,8 @@ class PassageWatch {
     return 0.5 * (grain.position() + from);
   }
   template <class Record>
-  static bool pinned(const Record& grain) {
-    return !(grain.at[Record::kInverseMass] > 0);
-  }
-
-  template <class Record>
   static bool crosses(const Record& grain, const Vec<Dim>& from, const Record& other,
                       const Vec<Dim>& others_from) {
-    if (pinned(grain) && pinned(other)) return false;
     const Vec<Dim> start = from - others_from;
     const Vec<Dim> way = grain.position() - other.position() - start;
     const double reach = grain.radius() + other.radius();
@@ -242,15 +241,17 @@ class PassageWatch {
   /// A wall behind whose face all is solid, and a round one, are not passed through: overlaps tell.
   template <class Record>
   Passage through_wall(int slot, const Record& grain, const Vec<Dim>& from,
-                       const std::vector<Wall<Dim>>& walls, std::size_t w) const {
+                       const std::vector<Wall<Dim>>& walls, std::size_t w,
+                       const ContactRules& rules) const {
     const Wall<Dim>& wall = walls[w];
-    if (!wall.pieces() || (pinned(grain) && !wall.yields())) return {};
+    if (!wall.pieces() || !rules.may_touch(slot, wall) || wall.lets_through(slot)) return {};
     // Seen from the wall, the grain ends where it is now.
     const Vec<Dim> to = grain.position();
     const Vec<Dim> way = to - wall.carried_along(wall_poses_[w], from);
     bool crosses = false;
     std::vector<int> found;
     wall.for_each_near(to, grain.radius() + way.norm(), found, [&](int piece) {
+      if (wall.front_only && wall.in_front(piece, to - way) < 0) return;
       crosses =
           crosses ||
           missed_overlap([&](double s) { return wall.foot(piece, to - (1 - s) * way).distance; },

@@ -3,16 +3,12 @@
 /// @file
 /// `PinnedGrains` knows which grains nothing moves.
 
-#include <lagrain/neighbourhood.hpp>
-
 #include <cstddef>
 #include <vector>
 
 namespace lagrain {
 
-/// Which grains stay where they are, or move as they are driven, whatever pushes them. Two things
-/// that no force moves exert nothing on each other: their pair is no contact, holds no energy and
-/// need not be listed.
+/// Which grains stay where they are, or move as they are driven, whatever pushes them.
 class PinnedGrains {
  public:
   PinnedGrains() = default;  ///< all grains can move
@@ -29,12 +25,7 @@ class PinnedGrains {
 
   /// Whether no force moves grain i.
   bool operator[](int i) const { return !pinned_.empty() && pinned_[static_cast<std::size_t>(i)]; }
-  /// Whether no force moves either grain of a pair.
-  bool both(const Pair& pair) const { return (*this)[pair.i] && (*this)[pair.j]; }
-  /// Takes the pairs out of a list that can be no contact.
-  void drop_from(std::vector<Pair>& pairs) const {
-    if (!pinned_.empty()) std::erase_if(pairs, [&](const Pair& pair) { return both(pair); });
-  }
+  bool none() const { return pinned_.empty(); }  ///< whether all grains can move
 
  private:
   std::vector<bool> pinned_;  // empty: none is

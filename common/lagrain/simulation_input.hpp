@@ -48,12 +48,15 @@ inline void expect_safe_step(double time_step, const TimeScales& scales) {
   LAGRAIN_EXPECTS(time_step > 0 && time_step <= scales.safe_step, message.str());
 }
 
-/// @throws ContractError if a wall cannot move or turn as it should, see Wall::defect
+/// @throws ContractError if a wall cannot move or turn as it should, see Wall::defect, or a piston
+/// cannot hold its pressure, see pressure_defect
 template <int Dim>
 void expect_sound_walls(const std::vector<Wall<Dim>>& walls) {
   for (const Wall<Dim>& wall : walls) {
     const std::string why = wall.defect();
     LAGRAIN_EXPECTS(why.empty(), "wall " + wall.name + ": " + why);
+    const std::string no_pressure = pressure_defect(walls, wall);
+    LAGRAIN_EXPECTS(no_pressure.empty(), "wall " + wall.name + ": " + no_pressure);
   }
 }
 

@@ -45,7 +45,8 @@ inline double largest_damped_phase(double damping_ratio) {
 /// material the lightest grain that moves is taken (the time grows with the mass; in Hertz's law it
 /// falls slowly with the radius, so grains of one material are taken to share a density), and, as
 /// its partner, the largest pinned one as well. A piston yields, like a grain of its mass. Two
-/// things that cannot move never touch. Where one law holds for all, all count as one material.
+/// things that cannot move never touch, nor do materials that are set apart. Where one law holds
+/// for all, all count as one material.
 template <int Dim, class Law, Needs needs>
 TimeScales time_scales(const Grains<Dim, needs>& g, const LawTable<Law>& laws,
                        const std::vector<Wall<Dim>>& walls) {
@@ -80,13 +81,14 @@ TimeScales time_scales(const Grains<Dim, needs>& g, const LawTable<Law>& laws,
   };
   for (const auto& [a, of_a] : extremes) {
     for (const auto& [b, of_b] : extremes) {
-      if (b < a) continue;
+      if (b < a || laws.apart()(a, b)) continue;
       const Law& law = laws.between(a, b);
       consider_pair(law, of_a.lightest, of_b.lightest);
       consider_pair(law, of_a.lightest, of_b.largest_pinned);
       consider_pair(law, of_b.lightest, of_a.largest_pinned);
     }
     for (const Wall<Dim>& wall : walls) {
+      if (laws.apart()(a, static_cast<std::size_t>(wall.material))) continue;
       const Law& law = laws.between(a, static_cast<std::size_t>(wall.material));
       const auto* piston = std::get_if<Piston<Dim>>(&wall.motion);
       if (const int i = of_a.lightest; i >= 0) {

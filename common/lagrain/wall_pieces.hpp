@@ -39,8 +39,8 @@ Vec<Dim> any_normal(const Vec<Dim>& along) {
   return (n - n.dot(along) / along.squaredNorm() * along).normalized();
 }
 
-// Every piece is solid from both sides. Its places are relative to its wall's point, in the wall's
-// own frame, which turns with it. Each has the same six functions.
+// A piece has no thickness; what is straight has a front. Its places are relative to its wall's
+// point, in the wall's own frame, which turns with it. Each has the same six functions.
 
 /// A straight line in the plane.
 class WallSegment {
@@ -51,6 +51,8 @@ class WallSegment {
   const Vec<2>& from() const { return from_; }    ///< its first end [m]
   const Vec<2>& to() const { return to_; }        ///< its second end [m]
   const Vec<2>& along() const { return along_; }  ///< from its first end to its second [m]
+  /// Unit, to the left of the way from its first end to its second [-].
+  Vec<2> front() const { return Vec<2>(-along_[1], along_[0]).normalized(); }
 
   /// The point of it that is nearest to x [m].
   Vec<2> nearest(const Vec<2>& x) const;
@@ -121,6 +123,7 @@ class Plate {
 
   const std::vector<Vec<3>>& corners() const { return corners_; }  ///< as they were given [m]
   const Vec<3>& normal() const { return normal_; }  ///< unit; the corners turn left about it [-]
+  const Vec<3>& front() const { return normal_; }   ///< the same
 
   /// The point of it that is nearest to x [m].
   Vec<3> nearest(const Vec<3>& x) const;

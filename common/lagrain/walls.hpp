@@ -10,11 +10,13 @@
 #include <lagrain/wall_pieces.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <compare>
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -61,6 +63,16 @@ struct Shake {
   double stop = std::numeric_limits<double>::infinity();  ///< [s]
 };
 
+/// A pressure on a face that reaches from wall to wall: these are half-spaces at right angles to
+/// it, in the plane a parallel pair, in space two such pairs at right angles to each other. So the
+/// face grows and shrinks as they move.
+template <int Dim>
+struct Pressure {
+  double value = 0;                                      ///< [Pa]
+  std::array<std::array<int, 2>, Dim - 1> between = {};  ///< pairs of places among the walls
+  double depth = 1;                                      ///< of discs [m]; 1 in space
+};
+
 /// Motion of a guided mass along its load, pushed by the load and by the grains. It is held until
 /// its start.
 template <int Dim>
@@ -68,6 +80,8 @@ struct Piston {
   double mass;       ///< [kg]
   Vec<Dim> load;     ///< [N], its own weight included
   double start = 0;  ///< [s]
+  /// That it holds: the load is this times the area of its face, along its normal, at each step.
+  std::optional<Pressure<Dim>> pressure = {};
 };
 
 /// Motion along straight ways between places, from each to the next in the time between them. The
@@ -143,6 +157,9 @@ struct Wall {
   /// The surface runs with this velocity, as far as that lies in it, while the wall stays [m/s].
   Vec<Dim> belt = Vec<Dim>::Zero();
   double until = std::numeric_limits<double>::infinity();  ///< from then on it is gone [s]
+  /// Of straight pieces with a front: whoever is behind where it begins to touch the wall passes
+  /// through, until it touches no more. Whoever is in front finds it solid for as long.
+  bool front_only = false;
 
   /// What follows is kept by the simulation.
   /// @{
@@ -157,6 +174,12 @@ struct Wall {
   bool joined = false;  ///< whether it may meet other walls, or itself, see join_walls
   bool uneven = false;  ///< whether the velocity of its surface may differ from place to place
   double seam = 0;      ///< to which joints of that surface are known [m]
+  /// Who touches a wall that is solid from the front alone, and whether it passes.
+  struct Encounter {
+    int grain;    ///< by slot
+    bool passes;  ///< whether it came from behind
+  };
+  std::vector<Encounter> encounters;  ///< sorted by grain
   /// @}
 
   /// A fixed half-space.
@@ -237,6 +260,14 @@ struct Wall {
     return std::visit([&](const auto& p) { return p.feature(in_own_frame(foot), reach); },
                       sheet->piece(piece));
   }
+  /// Whether the grain in a slot passes through it, having come from behind.
+  bool lets_through(int slot) const {
+    const auto found = std::lower_bound(encounters.begin(), encounters.end(), slot,
+                                        [](const Encounter& e, int s) { return e.grain < s; });
+    return found != encounters.end() && found->grain == slot && found->passes;
+  }
+  /// How far in front of a piece's nearest point a place is, along its front [m]; negative behind.
+  double in_front(int piece, const Vec<Dim>& x) const;
   /// Ends or corners of all of its pieces as they are now [m]; empty for one without an end.
   std::vector<Vec<Dim>> corners() const;
   /// The box around it as it was made [m]; empty for one without an end.
@@ -329,6 +360,18 @@ struct Wall {
     visit("force", force);
     visit("torque", torque);
     visit("work", work);
+    if (!front_only) return;
+    std::vector<int> grains;
+    std::vector<bool> passes;
+    for (const Encounter& encounter : encounters) {
+      grains.push_back(encounter.grain);
+      passes.push_back(encounter.passes);
+    }
+    visit("encounters", grains);
+    visit("passes", passes);
+    if (grains.size() != passes.size()) throw SceneError("its encounters do not fit together");
+    encounters.clear();
+    for (std::size_t k = 0; k < grains.size(); ++k) encounters.push_back({grains[k], passes[k]});
   }
 
  private:
@@ -408,11 +451,38 @@ struct WallPair {
   auto operator<=>(const WallPair&) const = default;
 };
 
+/// Notes a grain that touches a wall which is solid from the front alone. If it has begun to, the
+/// nearest piece says whether it comes from behind; of equally near ones, that which it faces most.
+/// @param pieces  of the wall, near the grain at x [m]
+/// @param now     gets the encounter, if there is one
+template <int Dim>
+void note_encounter(const Wall<Dim>& wall, std::span<const WallPair> pieces, const Vec<Dim>& x,
+                    double radius, std::vector<typename Wall<Dim>::Encounter>& now);
+
 /// Finds which walls may meet others, with which they are one surface then: at least one of two has
 /// an end, and their boxes touch, or one of the two moves. A wall of several pieces meets itself.
 /// Walls that hang together get one seam. Also sees which walls are uneven.
 template <int Dim>
 void join_walls(std::vector<Wall<Dim>>& walls);
+
+/// Why a piston among these walls cannot hold its pressure; empty if it can, or holds none.
+template <int Dim>
+std::string pressure_defect(const std::vector<Wall<Dim>>& walls, const Wall<Dim>& piston);
+
+/// The area [m^2] of a face that a pressure acts on, as the walls are now.
+template <int Dim>
+double area_of(const Pressure<Dim>& pressure, const std::vector<Wall<Dim>>& walls);
+
+/// Brings the loads of all pistons that hold a pressure up to where the walls are now.
+template <int Dim>
+void update_loads(std::vector<Wall<Dim>>& walls) {
+  for (Wall<Dim>& wall : walls) {
+    auto* piston = std::get_if<Piston<Dim>>(&wall.motion);
+    if (!piston || !piston->pressure) continue;
+    piston->load = piston->pressure->value * area_of(*piston->pressure, walls) *
+                   std::get<HalfSpace<Dim>>(wall.shape).normal;
+  }
+}
 
 namespace detail {
 /// The foot of x [m] on a wall that meets others, see contact_foot.

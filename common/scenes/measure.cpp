@@ -59,19 +59,21 @@ struct Slice {
 /// Which slice of a region a coordinate along its axis lies in; too small or large if in none.
 template <int Dim>
 double slice_at(const MeasuredRegion<Dim>& region, double coordinate) {
-  return (coordinate - region.low[region.axis]) /
-         (region.high[region.axis] - region.low[region.axis]) * region.slices;
+  return (coordinate - region.region.low[region.axis]) /
+         (region.region.high[region.axis] - region.region.low[region.axis]) * region.slices;
 }
 
 template <int Dim>
 bool holds(const MeasuredRegion<Dim>& region, const Vec<Dim>& x) {
-  return (x.array() >= region.low.array()).all() && (x.array() < region.high.array()).all();
+  return (x.array() >= region.region.low.array()).all() &&
+         (x.array() < region.region.high.array()).all();
 }
 
 template <int Dim>
 void add_grains(const Run<Dim>& run, const MeasuredRegion<Dim>& region,
                 std::vector<Slice<Dim>>& slices) {
-  const double thickness = (region.high[region.axis] - region.low[region.axis]) / region.slices;
+  const double thickness =
+      (region.region.high[region.axis] - region.region.low[region.axis]) / region.slices;
   for (int i = 0; i < run.count(); ++i) {
     const Vec<Dim> x = run.positions().col(i);
     const double r = run.radii()[i];
@@ -80,8 +82,8 @@ void add_grains(const Run<Dim>& run, const MeasuredRegion<Dim>& region,
     const double to = std::floor(slice_at(region, x[region.axis] + r));
     if (!(to >= 0 && from <= last)) continue;
     for (int k = static_cast<int>(std::max(from, 0.0)); k <= std::min(to, last); ++k) {
-      Vec<Dim> low = region.low;
-      Vec<Dim> high = region.high;
+      Vec<Dim> low = region.region.low;
+      Vec<Dim> high = region.region.high;
       low[region.axis] += k * thickness;
       high[region.axis] = low[region.axis] + thickness;
       slices[static_cast<std::size_t>(k)].solid += part_within(x, r, low, high, run.scene().depth);
@@ -147,25 +149,33 @@ void add_measure_columns(const Scene<Dim>& scene, std::vector<SeriesColumn>& col
       }
     }
   }
+  for (const MeasuredPlane<Dim>& plane : scene.planes) {
+    columns.push_back({plane.name + ".mass", "kg"});
+    columns.push_back({plane.name + ".grains", "-"});
+  }
 }
 
 template <int Dim>
 void add_measures(const Run<Dim>& run, Sample& row) {
   const Scene<Dim>& scene = run.scene();
-  if (scene.measures.empty()) return;
-  const std::vector<ContactRecord<Dim>> contacts = run.contacts();
+  std::vector<ContactRecord<Dim>> contacts;
+  if (!scene.measures.empty()) contacts = run.contacts();
   for (const MeasuredRegion<Dim>& region : scene.measures) {
     std::vector<Slice<Dim>> slices(static_cast<std::size_t>(region.slices));
     add_grains(run, region, slices);
     for (const auto& contact : contacts) add_contact(run, contact, region, slices);
-    const double volume =
-        (region.high - region.low).prod() * (Dim == 2 ? scene.depth : 1) / region.slices;
+    const double volume = (region.region.high - region.region.low).prod() *
+                          (Dim == 2 ? scene.depth : 1) / region.slices;
     for (const Slice<Dim>& slice : slices) {
       row.emplace_back(slice.solid / volume);
       for (const auto [a, b] : kParts<Dim>) {
         row.emplace_back((slice.moment(a, b) + slice.moment(b, a)) / (2 * volume));
       }
     }
+  }
+  for (const PlaneFlow<Dim>& flow : run.flows()) {
+    row.emplace_back(flow.mass());
+    row.emplace_back(flow.grains());
   }
 }
 

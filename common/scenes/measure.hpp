@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// Private to the sources of this folder: stress and solid fraction of a scene's regions.
+/// Private to the sources of this folder: stress and solid fraction of a scene's regions, and what
+/// flows through its planes.
 
 #include <lagrain/frame.hpp>
 
@@ -9,7 +10,8 @@
 
 namespace lagrain::detail {
 
-/// Adds the columns of all regions: for each slice its solid fraction and the parts of its stress.
+/// Adds the columns of all regions, for each slice its solid fraction and the parts of its stress,
+/// and of all planes: mass and number of what has passed.
 template <int Dim>
 void add_measure_columns(const Scene<Dim>& scene, std::vector<SeriesColumn>& columns);
 

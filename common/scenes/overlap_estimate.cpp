@@ -140,6 +140,7 @@ std::vector<double> falls(const Run<Dim>& run, const std::vector<bool>& moves,
     typename Plumb<Dim>::Across at;
     double height;
     double radius;
+    int grain;
     double top;  // of all so far in this square
   };
   const auto& radii = run.radii();
@@ -169,6 +170,7 @@ std::vector<double> falls(const Run<Dim>& run, const std::vector<bool>& moves,
     if (moves[i]) {
       double landing = -kInfinity;
       for (const Wall<Dim>& wall : run.walls()) {
+        if (!run.rules().may_touch(static_cast<int>(i), wall)) continue;
         landing = std::max(landing, heights[i] - fall_to_wall(wall, x, r, plumb.down()));
       }
       visit(at, r, [&](const Square<Dim>& square) {
@@ -176,6 +178,7 @@ std::vector<double> falls(const Run<Dim>& run, const std::vector<bool>& moves,
         if (found == squares.end()) return;
         for (auto below = found->second.rbegin(); below != found->second.rend(); ++below) {
           if (below->top + r <= landing) break;
+          if (!run.rules().may_touch({static_cast<int>(i), below->grain})) continue;
           const double reach = r + below->radius;
           const double room = reach * reach - (at - below->at).squaredNorm();
           if (room > 0) landing = std::max(landing, below->height + std::sqrt(room));
@@ -188,7 +191,7 @@ std::vector<double> falls(const Run<Dim>& run, const std::vector<bool>& moves,
     visit(at, r, [&](const Square<Dim>& square) {
       auto& landed = squares[square];
       const double top = landed.empty() ? -kInfinity : landed.back().top;
-      landed.push_back({at, height, r, std::max(top, height + r)});
+      landed.push_back({at, height, r, static_cast<int>(i), std::max(top, height + r)});
     });
   }
   return fallen;

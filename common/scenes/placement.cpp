@@ -106,6 +106,7 @@ class Placer {
  public:
   explicit Placer(const Scene<Dim>& scene)
       : scene_(scene),
+        apart_(scene.apart()),
         walls_(scene.walls),
         listed_(read_files(scene)),
         cell_(cell_size(scene, listed_)),
@@ -184,6 +185,7 @@ class Placer {
     };
     for (const Wall<Dim>& wall : walls_) {
       if (p.held() && !wall.yields()) continue;  // no force moves either
+      if (apart(p.material, wall.material)) continue;
       const double distance = wall.foot(p.position).distance;
       if (distance < 0) throw refusal(index, "lies behind wall \"" + wall.name + "\"");
       const double overlap = (p.radius - distance) / p.radius;
@@ -193,7 +195,7 @@ class Placer {
       const Grain<Dim>& other = placed_.grains[static_cast<std::size_t>(j)];
       const double overlap = (p.radius + other.radius - (p.position - other.position).norm()) /
                              std::min(p.radius, other.radius);
-      if (overlap > limit && !(p.held() && other.held())) {
+      if (overlap > limit && !(p.held() && other.held()) && !apart(p.material, other.material)) {
         throw overlaps(name_of(static_cast<std::size_t>(j)), overlap);
       }
       return true;
@@ -209,6 +211,10 @@ class Placer {
     grain.mass = scene_.materials[static_cast<std::size_t>(p.material)].density *
                  grain_volume<Dim>(p.radius, scene_.depth);
     add(grain, -1);
+  }
+
+  bool apart(int a, int b) const {
+    return apart_(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
   }
 
   void add(const Grain<Dim>& grain, int group) {
@@ -258,7 +264,8 @@ class Placer {
     for (std::size_t d = 0; d < Dim; ++d) {
       const auto k = static_cast<Eigen::Index>(d);
       // A region given as a multiple of the spacing holds that many, rounding or not.
-      shape[d] = static_cast<std::int64_t>((f.high[k] - f.low[k]) / width * (1 + 1e-12));
+      shape[d] =
+          static_cast<std::int64_t>((f.region.high[k] - f.region.low[k]) / width * (1 + 1e-12));
       if (shape[d] == 0) return 0;
     }
     int held = 0;
@@ -268,7 +275,8 @@ class Placer {
       for (std::size_t d = 0; d < Dim; ++d) {
         const auto k = static_cast<Eigen::Index>(d);
         const double room = 0.5 * width / kSpacing * (kSpacing - 1);
-        x[k] = f.low[k] + (static_cast<double>(at[d]) + 0.5) * width + random.uniform(-room, room);
+        x[k] = f.region.low[k] + (static_cast<double>(at[d]) + 0.5) * width +
+               random.uniform(-room, room);
       }
       if (free(x, r)) {
         add(grain_from(scene_, f, r, x, random), group);
@@ -298,8 +306,10 @@ class Placer {
       for (int attempt = 0; attempt < kTries && !found; ++attempt) {
         if (full && overlapping == kTriesWhenFull) break;
         Vec<Dim> x;
-        for (int d = 0; d < Dim; ++d) x[d] = random.uniform(f.low[d] + r, f.high[d] - r);
-        if (!(((x - f.low).array() >= r).all() && ((f.high - x).array() >= r).all())) continue;
+        for (int d = 0; d < Dim; ++d)
+          x[d] = random.uniform(f.region.low[d] + r, f.region.high[d] - r);
+        if (!(((x - f.region.low).array() >= r).all() && ((f.region.high - x).array() >= r).all()))
+          continue;
         found = free(x, r);
         if (found) add(grain_from(scene_, f, r, x, random), group);
         if (found || !clear_of_walls(walls_, x, r)) continue;
@@ -324,7 +334,8 @@ class Placer {
   bool shares_region(std::size_t grain, const Fill<Dim>& f) const {
     if (placed_.group[grain] < 0) return false;
     const Fill<Dim>& other = scene_.fills[static_cast<std::size_t>(placed_.group[grain])];
-    return other.arrangement == Arrangement::random && other.low == f.low && other.high == f.high;
+    return other.arrangement == Arrangement::random && other.region.low == f.region.low &&
+           other.region.high == f.region.high;
   }
 
   /// @return the solid fraction asked for, in words
@@ -342,7 +353,7 @@ class Placer {
     for (std::size_t i = 0; i < placed_.grains.size(); ++i) {
       if (shares_region(i, f)) count(placed_.grains[i].radius);
     }
-    const double fraction = solid / (f.high - f.low).prod();
+    const double fraction = solid / (f.region.high - f.region.low).prod();
     std::string asked = "a solid fraction of " + three_digits(fraction) + " in its region";
     // Small grains between large ones pass the bound of equal ones.
     const double limit = least == most ? kDensest<Dim> : 1;
@@ -376,8 +387,8 @@ class Placer {
     std::vector<Grain<Dim>> grains;
     for (std::size_t i = 0; i < placed_.grains.size(); ++i) {
       Grain<Dim> grain = placed_.grains[i];
-      const bool near = ((grain.position - f.low).array() > -grain.radius).all() &&
-                        ((f.high - grain.position).array() > -grain.radius).all();
+      const bool near = ((grain.position - f.region.low).array() > -grain.radius).all() &&
+                        ((f.region.high - grain.position).array() > -grain.radius).all();
       if (!near) continue;
       grain.driven = false;
       grain.pinned = !shares_region(i, f);
@@ -390,8 +401,8 @@ class Placer {
     }
     std::vector<Wall<Dim>> walls = walls_;
     for (int d = 0; d < Dim; ++d) {
-      walls.push_back(Wall<Dim>::half_space("low", f.low, Vec<Dim>::Unit(d)));
-      walls.push_back(Wall<Dim>::half_space("high", f.high, -Vec<Dim>::Unit(d)));
+      walls.push_back(Wall<Dim>::half_space("low", f.region.low, Vec<Dim>::Unit(d)));
+      walls.push_back(Wall<Dim>::half_space("high", f.region.high, -Vec<Dim>::Unit(d)));
     }
     const double left = detail::push_apart(grains, std::move(walls), kPushes);
     if (left > 0) {
@@ -411,6 +422,7 @@ class Placer {
   }
 
   const Scene<Dim>& scene_;
+  MaterialsApart apart_;
   std::vector<Wall<Dim>> walls_;  // where the run begins: a path may begin elsewhere
   std::vector<detail::ListedGrains<Dim>> listed_;  // of each file
   double cell_;                                    // [m]

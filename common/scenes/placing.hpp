@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -131,6 +132,13 @@ std::vector<Grain<Dim>> smallest_newcomers(const Scene<Dim>& scene) {
         grain_from(scene, inlet, smallest(inlet.radius), Vec<Dim>(inlet.region.low), random));
   }
   return grains;
+}
+
+/// Why no contact can be in a scene that has none to set the time step.
+template <int Dim>
+std::string why_no_contact(const Scene<Dim>& scene) {
+  return scene.apart().empty() ? "nothing in the scene can move"
+                               : "nothing in the scene that can move touches anything";
 }
 
 /// Whether a ball lies on the free side of all walls, and touches none.

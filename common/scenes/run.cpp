@@ -13,19 +13,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <thread>
+#include <variant>
 
 namespace lagrain {
 
 template <int Dim>
 Run<Dim>::Run(Scene<Dim> scene, Placement<Dim> placement)
-    : scene_(std::move(scene)),
-      groups_(std::move(placement.group)),
-      pinned_(static_cast<int>(placement.grains.size()),
-              [&](int i) { return placement.grains[static_cast<std::size_t>(i)].held() ? 0 : 1; }) {
+    : scene_(std::move(scene)), groups_(std::move(placement.group)) {
+  std::vector<bool> pinned;
   for (const Grain<Dim>& grain : placement.grains) {
     materials_.push_back(grain.material);
+    pinned.push_back(grain.held());
     drives_ = drives_ || grain.driven;
+  }
+  set_rules(pinned);
+  for (const MeasuredPlane<Dim>& plane : scene_.planes) {
+    std::optional<typename PlaneFlow<Dim>::Box> within;
+    if (plane.region) within.emplace(plane.region->low, plane.region->high);
+    flows_.emplace_back(plane.point, plane.normal, within);
   }
   if (!scene_.inlets.empty() || !scene_.outlets.empty() || scene_.domain) {
     traffic_ = std::make_unique<detail::Traffic<Dim>>(scene_);
@@ -46,6 +54,8 @@ const TrafficCounts* Run<Dim>::traffic() const {
 template <int Dim>
 void Run<Dim>::started() {
   start_ = ledger();
+  if (traffic_) traffic_->remember(*this);
+  look_at_planes(flows_);
   if (scene_.audit) check_contacts();
 }
 
@@ -54,38 +64,70 @@ void Run<Dim>::persist(StateVisitor visit) {
   persist_simulation(visit);
   visit("materials", materials_);
   visit("groups", groups_);
-  std::vector<int> pinned(groups_.size());
-  for (std::size_t i = 0; i < pinned.size(); ++i) pinned[i] = pinned_[static_cast<int>(i)];
-  visit("pinned", pinned);
+  std::vector<bool> held(groups_.size());
+  for (std::size_t i = 0; i < held.size(); ++i) held[i] = pinned()[static_cast<int>(i)];
+  visit("held", held);
+  for (std::size_t k = 0; k < flows_.size(); ++k) {
+    flows_[k].persist(visit.in("planes").in(std::to_string(k)));
+  }
   start_.persist(visit.in("start"));
   audit_.persist(visit.in("audit"));
   if (traffic_) traffic_->persist(visit.in("traffic"));
   if (!visit.restores()) return;
   const auto n = static_cast<std::size_t>(count());
-  if (materials_.size() != n || groups_.size() != n || pinned.size() != n) {
+  if (materials_.size() != n || groups_.size() != n || held.size() != n) {
     throw SceneError("its grains do not fit together");
   }
-  pinned_ =
-      PinnedGrains(count(), [&](int i) { return pinned[static_cast<std::size_t>(i)] ? 0 : 1; });
+  set_rules(held);
 }
 
 template <int Dim>
 void Run<Dim>::step(std::int64_t count) {
   constexpr int kLook = detail::Traffic<Dim>::kStepsBetweenLooks;
+  // Ways count as straight from look to look. By default so many steps are less than half of a
+  // contact, so that no grain turns back twice. It was not tuned: a look reads all grains once, so
+  // at half of the number it costs twice as much, and the rim of a region is a little sharper.
+  constexpr int kPlaneLook = 10;
+  static_assert(kLook % kPlaneLook == 0);  // who leaves has just been looked at
   while (count > 0) {
     std::int64_t at_once = scene_.audit ? 1 : count;
     if (traffic_) at_once = std::min(at_once, kLook - steps() % kLook);
+    if (!flows_.empty()) at_once = std::min(at_once, kPlaneLook - steps() % kPlaneLook);
     advance(at_once);
     count -= at_once;
+    if (steps() % kPlaneLook == 0) look_at_planes(flows_);
     if (traffic_ && steps() % kLook == 0) look_after_traffic();
     if (scene_.audit) check_contacts();
   }
 }
 
 template <int Dim>
+std::vector<PlaneFlow<Dim>> Run<Dim>::flows() const {
+  std::vector<PlaneFlow<Dim>> now = flows_;
+  look_at_planes(now);
+  return now;
+}
+
+template <int Dim>
+void Run<Dim>::look_at_planes(std::vector<PlaneFlow<Dim>>& flows) const {
+  for (PlaneFlow<Dim>& flow : flows) flow.look(ids(), positions(), masses());
+}
+
+template <int Dim>
+void Run<Dim>::set_rules(const std::vector<bool>& pinned) {
+  rules_ =
+      ContactRules(PinnedGrains(static_cast<int>(pinned.size()),
+                                [&](int i) { return pinned[static_cast<std::size_t>(i)] ? 0 : 1; }),
+                   std::vector<std::uint8_t>(materials_.begin(), materials_.end()), scene_.apart());
+}
+
+template <int Dim>
 void Run<Dim>::look_after_traffic() {
   const auto change = traffic_->look(*this);
-  if (change.leavers.empty() && change.newcomers.empty()) return;
+  if (change.leavers.empty() && change.newcomers.empty()) {
+    traffic_->remember(*this);
+    return;
+  }
   exchange(change.leavers, change.newcomers);
   std::vector<bool> pinned;
   auto leaver = change.leavers.begin();
@@ -97,7 +139,7 @@ void Run<Dim>::look_after_traffic() {
     const std::size_t now = pinned.size();
     materials_[now] = materials_[i];
     groups_[now] = groups_[i];
-    pinned.push_back(pinned_[static_cast<int>(i)]);
+    pinned.push_back(rules_.pinned()[static_cast<int>(i)]);
   }
   materials_.resize(pinned.size());
   groups_.resize(pinned.size());
@@ -106,8 +148,9 @@ void Run<Dim>::look_after_traffic() {
     pinned.push_back(grain.held());
   }
   groups_.insert(groups_.end(), change.groups.begin(), change.groups.end());
-  pinned_ =
-      PinnedGrains(count(), [&](int i) { return pinned[static_cast<std::size_t>(i)] ? 0 : 1; });
+  set_rules(pinned);
+  traffic_->remember(*this);
+  look_at_planes(flows_);
 }
 
 template <int Dim>
@@ -125,7 +168,9 @@ void Run<Dim>::check_contacts() {
   const bool due = count() <= kEveryStepLimit || listed_anew || steps() % scene_.audit_every == 0;
   // A fourth-order step ends with a drift after its last forces: a list that expired there is
   // renewed before anybody reads it.
-  if (due && near_is_valid()) audit_.check(positions(), radii(), near_pairs(), pinned_);
+  if (!due || !near_is_valid()) return;
+  audit_.check(positions(), radii(), near_pairs(), rules_);
+  audit_.check_walls(positions(), radii(), walls(), near_wall_pairs(), rules_);
 }
 
 template <int Dim>
@@ -220,13 +265,29 @@ std::string explain(const Run<Dim>& run) {
                       std::to_string(detail::due(inlet, scene.duration)) + " in all");
   }
   for (const Outlet<Dim>& outlet : scene.outlets) line("outlet", "\"" + outlet.name + "\"");
+  for (const PairLaw& pair : scene.pairs) {
+    if (pair.touch) continue;
+    line("no contacts", "between \"" + scene.materials[static_cast<std::size_t>(pair.a)].name +
+                            "\" and \"" + scene.materials[static_cast<std::size_t>(pair.b)].name +
+                            "\"");
+  }
+  for (const Wall<Dim>& wall : run.walls()) {
+    const auto* piston = std::get_if<Piston<Dim>>(&wall.motion);
+    if (!piston || !piston->pressure) continue;
+    const double area = area_of(*piston->pressure, run.walls());
+    line("piston", "\"" + wall.name + "\" holds " + shortest(piston->pressure->value) +
+                       " Pa, at the start on " + rounded(area) + " m^2");
+  }
+  for (const MeasuredPlane<Dim>& plane : scene.planes) {
+    line("flow", "through plane \"" + plane.name + "\"");
+  }
   if (std::isfinite(scales.contact)) {
     line("contact time", rounded(scales.contact) + " s (the shortest)");
     line("time step", rounded(run.time_step()) + " s (1/" +
                           rounded(scales.contact / run.time_step()) + " contact)");
     line("safe step", rounded(scales.safe_step) + " s (the largest allowed)");
   } else {
-    line("contact time", "none: nothing in the scene can move");
+    line("contact time", "none: " + detail::why_no_contact(scene));
     line("time step", rounded(run.time_step()) + " s");
   }
   const OverlapEstimate guess = estimate_overlap(run);
@@ -316,6 +377,11 @@ std::vector<std::pair<std::string, std::string>> facts(const Run<Dim>& run) {
       if (traffic.lost > static_cast<std::int64_t>(traffic.first_lost.size())) lost += ", ...";
       fact("left the domain", lost);
     }
+  }
+  const auto flows = run.flows();
+  for (std::size_t k = 0; k < flows.size(); ++k) {
+    fact("flow", "\"" + run.scene().planes[k].name + "\": " + std::to_string(flows[k].grains()) +
+                     " grains passed, " + rounded(flows[k].mass()) + " kg");
   }
   fact("contacts audited", run.scene().audit ? std::to_string(run.audit().contacts()) + " in " +
                                                    std::to_string(run.audit().checks()) + " checks"

@@ -32,6 +32,7 @@ inline constexpr Measure kAngularVelocity{"an angular velocity", {0, 0, -1}};
 inline constexpr Measure kSpeed{"a speed", {1, 0, -1}};
 inline constexpr Measure kAcceleration{"an acceleration", {1, 0, -2}};
 inline constexpr Measure kForce{"a force", {1, 1, -2}};
+inline constexpr Measure kPressure{"a pressure", {-1, 1, -2}};
 inline constexpr Measure kDensity{"a density", {-3, 1, 0}};
 inline constexpr Measure kViscosityMeasure{"a viscosity", {-1, 1, -1}};
 
@@ -79,6 +80,7 @@ inline constexpr Key kMeasure{"measure"};
 inline constexpr Key kOutput{"output"};
 
 inline constexpr Key kBetween{"between"};
+inline constexpr Key kTouch{"touch"};
 
 inline constexpr Key kViscosity{"viscosity", kViscosityMeasure, Range::not_negative};
 inline constexpr Key kDragRate{"rate", detail::kRate, Range::not_negative};
@@ -133,6 +135,7 @@ inline constexpr Key kOpen{"open"};
 inline constexpr Key kOpenings{"openings"};
 inline constexpr Key kSide{"side"};
 inline constexpr Key kBelt{"belt", kSpeed};
+inline constexpr Key kSolid{"solid"};
 inline constexpr Key kUntil{"until", kTime, Range::positive};
 
 inline constexpr Key kMotion{"motion"};
@@ -143,6 +146,7 @@ inline constexpr Key kAmplitude{"amplitude", kLength};
 inline constexpr Key kFrequency{"frequency", detail::kFrequency, Range::positive};
 inline constexpr Key kPistonMass{"mass", kMass, Range::positive};
 inline constexpr Key kLoad{"load", kForce};
+inline constexpr Key kPressure{"pressure", detail::kPressure, Range::positive};
 inline constexpr Key kTimes{"times", kTime, Range::not_negative};
 inline constexpr Key kShifts{"shifts", kLength};
 
@@ -192,6 +196,9 @@ enum class MotionType { steady, shake, path, piston };
 inline constexpr std::array kMotionWords{
     Word<MotionType>{"steady", MotionType::steady}, Word<MotionType>{"shake", MotionType::shake},
     Word<MotionType>{"path", MotionType::path}, Word<MotionType>{"piston", MotionType::piston}};
+
+/// From where a thin wall is solid.
+inline constexpr std::array kSolidWords{Word<bool>{"both", false}, Word<bool>{"front", true}};
 
 /// How a wall can turn; a wall without it stays upright.
 enum class TurningType { steady, swing };

@@ -226,6 +226,7 @@ class Reader {
     read_domain();
     top_.for_each(keys::kWall, [&](TomlTable& s, int index) { read_wall(s, index); });
     top_.for_each(keys::kBox, [&](TomlTable& s, int) { read_box(s); });
+    resolve_pressures();
     top_.for_each(keys::kMeasure, [&](TomlTable& s, int index) { read_measure(s, index); });
     read_output();
     top_.finish();
@@ -373,7 +374,8 @@ class Reader {
         top_.fail(keys::kIntegrator, why + "friction = \"none\"");
       }
       bool lossless = scene_.law.restitution == 1;
-      for (const PairLaw& p : scene_.pairs) lossless = lossless && p.law.restitution == 1;
+      for (const PairLaw& p : scene_.pairs)
+        lossless = lossless && (p.law.restitution == 1 || !p.touch);
       if (!lossless) top_.fail(keys::kIntegrator, why + "restitution = 1");
     }
   }
@@ -391,6 +393,15 @@ class Reader {
         s.fail(keys::kBetween, "a second time [\"" + names[0] + "\", \"" + names[1] + "\"]");
       }
     }
+    law.touch = s.flag(keys::kTouch, law.touch);
+    if (!law.touch) {
+      for (const auto& law_keys :
+           {description_of(scene_.normal).keys, description_of(scene_.friction).keys}) {
+        for (const LawKey& key : law_keys) {
+          s.refuse(detail::key_of(key), "the two do not touch; remove this line");
+        }
+      }
+    }
     law.law = read_law(s, Dim, scene_.normal, scene_.friction, &scene_.law);
     scene_.pairs.push_back(law);
   }
@@ -406,9 +417,7 @@ class Reader {
     }
     fill.count = read_count(s);
     fill.radius = read_radius(s);
-    const Region<Dim> region = read_region(s);
-    fill.low = region.low;
-    fill.high = region.high;
+    fill.region = read_region(s);
     read_held(s, fill);
     if (fill.pinned) {
       s.refuse(keys::kVelocity, "pinned grains stay; remove this line");
@@ -539,7 +548,7 @@ class Reader {
     scene_.domain = domain;
   }
 
-  /// Inlets and outlets are columns of the series.
+  /// Inlets, outlets and planes are columns of the series.
   void expect_new_door(TomlTable& s, const std::string& name) {
     const auto called = [&](const auto& door) { return door.name == name; };
     if (std::any_of(scene_.inlets.begin(), scene_.inlets.end(), called) ||
@@ -588,6 +597,8 @@ class Reader {
     const std::string name = s.text(keys::kName, "wall " + std::to_string(index + 1));
     const int material = material_of(s, false);
     Wall<Dim> wall = read_shape(s, name);
+    wall.front_only = s.word<bool>(keys::kSolid, detail::kSolidWords, wall.front_only);
+    if (const std::string defect = wall.defect(); !defect.empty()) s.fail(keys::kSolid, defect);
     if (s.has(keys::kTurning)) read_turning(s.table(keys::kTurning), wall);
     add_wall(s, std::move(wall), material);
   }
@@ -961,8 +972,14 @@ class Reader {
       case detail::MotionType::piston: {
         Piston<Dim> m{};
         m.mass = s.number(keys::kPistonMass);
-        m.load = s.vector<Dim>(keys::kLoad);
-        if (!is_direction(m.load)) s.expected(keys::kLoad, "a force: the piston moves along it");
+        if (s.has(keys::kPressure)) {
+          s.refuse(keys::kLoad, "either load or pressure");
+          read_pressure(s, m, wall);
+        } else {
+          s.refuse(keys::kBetween, "it bounds the face that a pressure acts on; give pressure");
+          m.load = s.vector<Dim>(keys::kLoad);
+          if (!is_direction(m.load)) s.expected(keys::kLoad, "a force: the piston moves along it");
+        }
         m.start = s.number(keys::kStart, m.start);
         s.refuse(keys::kStop, "a piston has none: grains stop it; remove this line");
         wall.motion = m;
@@ -970,6 +987,40 @@ class Reader {
       }
     }
     s.finish();
+  }
+
+  /// The walls that it presses between are found when all have been read.
+  void read_pressure(TomlTable& s, Piston<Dim>& piston, const Wall<Dim>& wall) {
+    const auto* face = std::get_if<HalfSpace<Dim>>(&wall.shape);
+    if (!face) s.fail(keys::kPressure, "it acts along a normal; give the piston point and normal");
+    piston.load = Vec<Dim>::Zero();
+    piston.pressure.emplace();
+    piston.pressure->value = s.number(keys::kPressure);
+    if (Dim == 2) piston.pressure->depth = scene_.depth;
+    const std::string what = Dim == 2 ? "the names of the two walls that it presses between"
+                                      : "the names of four walls: it presses between the first "
+                                        "two, and between the others";
+    const auto names = s.texts(keys::kBetween, what, "a wall");
+    if (names.size() != 2 * (Dim - 1)) s.expected(keys::kBetween, what);
+    pressures_.push_back({scene_.walls.size(), names, s});
+  }
+
+  void resolve_pressures() {
+    std::vector<std::string> known;
+    for (const Wall<Dim>& wall : scene_.walls) known.push_back(wall.name);
+    for (auto& [number, names, s] : pressures_) {
+      Wall<Dim>& wall = scene_.walls[number];
+      auto& between = std::get<Piston<Dim>>(wall.motion).pressure->between;
+      for (std::size_t k = 0; k < names.size(); ++k) {
+        const auto found = std::find(known.begin(), known.end(), names[k]);
+        if (found == known.end()) {
+          s.fail(keys::kBetween, "no wall \"" + names[k] + "\"" + suggestion(names[k], known));
+        }
+        between[k / 2][k % 2] = static_cast<int>(found - known.begin());
+      }
+      const std::string defect = pressure_defect(scene_.walls, wall);
+      if (!defect.empty()) s.fail(keys::kBetween, defect);
+    }
   }
 
   void read_turning(TomlTable s, Wall<Dim>& wall) {
@@ -1009,14 +1060,18 @@ class Reader {
   }
 
   void read_measure(TomlTable& s, int index) {
-    MeasuredRegion<Dim> measure;
-    measure.name = s.text(keys::kName, "measure " + std::to_string(index + 1));
-    for (const MeasuredRegion<Dim>& other : scene_.measures) {
-      if (other.name == measure.name) s.fail(keys::kName, "a second \"" + measure.name + "\"");
+    const std::string name = s.text(keys::kName, "measure " + std::to_string(index + 1));
+    const auto called = [&](const auto& other) { return other.name == name; };
+    if (std::any_of(scene_.measures.begin(), scene_.measures.end(), called) ||
+        std::any_of(scene_.planes.begin(), scene_.planes.end(), called)) {
+      s.fail(keys::kName, "a second \"" + name + "\"");
     }
-    const Region<Dim> region = read_region(s);
-    measure.low = region.low;
-    measure.high = region.high;
+    if (s.has(keys::kPoint) || s.has(keys::kNormal)) {
+      read_plane(s, name);
+      return;
+    }
+    if (!s.has(keys::kRegion)) s.missing(keys::kRegion, "a region, or point and normal of a plane");
+    MeasuredRegion<Dim> measure{.name = name, .region = read_region(s)};
     const std::int64_t slices = s.integer(keys::kSlices, 1, measure.slices);
     if (slices > kMostSlices) {
       s.expected(keys::kSlices, "at most " + std::to_string(kMostSlices) + " slices");
@@ -1029,6 +1084,19 @@ class Reader {
     scene_.measures.push_back(std::move(measure));
   }
 
+  /// Reads a plane through which the flow is measured.
+  void read_plane(TomlTable& s, const std::string& name) {
+    expect_new_door(s, name);
+    MeasuredPlane<Dim> plane{name, s.vector<Dim>(keys::kPoint), s.vector<Dim>(keys::kNormal), {}};
+    if (!is_direction(plane.normal)) s.expected(keys::kNormal, "a direction");
+    if (!is_unit(plane.normal)) plane.normal.normalize();
+    if (s.has(keys::kRegion)) plane.region = read_region(s);
+    for (const Key& key : {keys::kSlices, keys::kAxis}) {
+      s.refuse(key, "a plane has no slices; remove this line");
+    }
+    scene_.planes.push_back(std::move(plane));
+  }
+
   void read_output() {
     if (!top_.has(keys::kOutput)) return;
     TomlTable s = top_.table(keys::kOutput);
@@ -1039,10 +1107,18 @@ class Reader {
     s.finish();
   }
 
+  /// A piston that holds a pressure between walls that may come later.
+  struct PressureBetween {
+    std::size_t wall;
+    std::vector<std::string> names;
+    TomlTable motion;  // for messages
+  };
+
   Scene<Dim> scene_;
   TomlFile file_;
   std::filesystem::path folder_;
   TomlTable top_;
+  std::vector<PressureBetween> pressures_;
 };
 
 /// Scenes are called by their file's name in messages, without the folder.

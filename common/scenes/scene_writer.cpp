@@ -88,7 +88,11 @@ class Inline {
  public:
   template <class Value>
   Inline& add(const Key& key, const Value& value) {
-    text_ += (text_.empty() ? "" : ", ") + std::string(key.name) + " = " + in_toml(value);
+    return as_it_is(key, in_toml(value));
+  }
+  /// A value that is TOML already.
+  Inline& as_it_is(const Key& key, const std::string& value) {
+    text_ += (text_.empty() ? "" : ", ") + std::string(key.name) + " = " + value;
     return *this;
   }
   bool empty() const { return text_.empty(); }
@@ -124,7 +128,11 @@ class Writer {
       one_of(keys::kPair);
       out_.as_it_is(keys::kBetween, "[" + in_toml(material_name(pair.a)) + ", " +
                                         in_toml(material_name(pair.b)) + "]");
-      write_law(pair.law);
+      if (pair.touch) {
+        write_law(pair.law);
+      } else {
+        out_.add(keys::kTouch, false);
+      }
     }
     for (const Fill<Dim>& fill : scene_.fills) write_fill(fill);
     for (const PlacedGrain<Dim>& grain : scene_.grains) write_grain(grain);
@@ -137,6 +145,7 @@ class Writer {
     }
     for (const Wall<Dim>& wall : scene_.walls) write_wall(wall);
     for (const MeasuredRegion<Dim>& measure : scene_.measures) write_measure(measure);
+    for (const MeasuredPlane<Dim>& plane : scene_.planes) write_plane(plane);
     write_output();
     return std::move(out_).text();
   }
@@ -214,7 +223,7 @@ class Writer {
     out_.add(keys::kMaterial, material_name(fill.material));
     if (fill.count) out_.add(keys::kCount, *fill.count);
     write_radius(fill.radius);
-    write_region(fill.low, fill.high);
+    write_region(fill.region);
     out_.add(keys::kArrangement, text_of(detail::kArrangementWords, fill.arrangement));
     if (fill.pinned) {
       out_.add(keys::kPinned, true);
@@ -230,7 +239,7 @@ class Writer {
     out_.add(keys::kName, std::string_view(inlet.name));
     out_.add(keys::kMaterial, material_name(inlet.material));
     write_radius(inlet.radius);
-    write_region(inlet.region.low, inlet.region.high);
+    write_region(inlet.region);
     out_.add(keys::kRate, inlet.rate);
     out_.add(keys::kStart, inlet.start);
     if (std::isfinite(inlet.stop)) out_.add(keys::kStop, inlet.stop);
@@ -249,8 +258,9 @@ class Writer {
     out_.add(keys::kHigh, region.high);
   }
 
-  void write_region(const Vec<Dim>& low, const Vec<Dim>& high) {
-    out_.as_it_is(keys::kRegion, Inline{}.add(keys::kLow, low).add(keys::kHigh, high).text());
+  void write_region(const Region<Dim>& region) {
+    out_.as_it_is(keys::kRegion,
+                  Inline{}.add(keys::kLow, region.low).add(keys::kHigh, region.high).text());
   }
 
   /// Of a fill or an inlet.
@@ -337,6 +347,7 @@ class Writer {
                           },
                           [&](const Sheet<Dim>& sheet) { write_sheet(wall.home, sheet); }},
                wall.shape);
+    if (wall.front_only) out_.add(keys::kSolid, text_of(detail::kSolidWords, wall.front_only));
     write_motion(wall);
     write_turning(wall);
     if (wall.runs()) out_.add(keys::kBelt, wall.belt);
@@ -412,11 +423,27 @@ class Writer {
                           [&](const Piston<Dim>& m) {
                             type(detail::MotionType::piston);
                             motion.add(keys::kPistonMass, m.mass);
-                            motion.add(keys::kLoad, m.load);
+                            if (m.pressure) {
+                              write_pressure(motion, *m.pressure);
+                            } else {
+                              motion.add(keys::kLoad, m.load);
+                            }
                             motion.add(keys::kStart, m.start);
                           }},
                wall.motion);
     if (!motion.empty()) out_.as_it_is(keys::kMotion, motion.text());
+  }
+
+  void write_pressure(Inline& motion, const Pressure<Dim>& pressure) {
+    std::string names;
+    for (const auto& pair : pressure.between) {
+      for (const int wall : pair) {
+        names += (names.empty() ? "" : ", ") +
+                 in_toml(std::string_view(scene_.walls[static_cast<std::size_t>(wall)].name));
+      }
+    }
+    motion.add(keys::kPressure, pressure.value);
+    motion.as_it_is(keys::kBetween, "[" + names + "]");
   }
 
   void write_turning(const Wall<Dim>& wall) {
@@ -447,11 +474,18 @@ class Writer {
   void write_measure(const MeasuredRegion<Dim>& measure) {
     one_of(keys::kMeasure);
     out_.add(keys::kName, std::string_view(measure.name));
-    out_.as_it_is(keys::kRegion,
-                  Inline{}.add(keys::kLow, measure.low).add(keys::kHigh, measure.high).text());
+    write_region(measure.region);
     out_.add(keys::kSlices, measure.slices);
     out_.add(keys::kAxis,
              std::string_view("xyz").substr(static_cast<std::size_t>(measure.axis), 1));
+  }
+
+  void write_plane(const MeasuredPlane<Dim>& plane) {
+    one_of(keys::kMeasure);
+    out_.add(keys::kName, std::string_view(plane.name));
+    out_.add(keys::kPoint, plane.point);
+    out_.add(keys::kNormal, plane.normal);
+    if (plane.region) write_region(*plane.region);
   }
 
   void write_output() {

@@ -56,6 +56,7 @@ class SimulationRun final : public Run<Dim> {
   ContactStatistics statistics() const override { return contact_statistics(sim_); }
   Ledger ledger() const override { return energy_ledger(sim_); }
   std::vector<Pair> near_pairs() const override { return sim_.near_pairs(); }
+  std::vector<WallPair> near_wall_pairs() const override { return sim_.near_wall_pairs(); }
   std::int64_t refreshes() const override { return sim_.refreshes(); }
   const AnyNeighbourhood<Dim>& neighbourhood() const override { return sim_.neighbourhood(); }
   double neighbourhood_seconds() const override { return sim_.neighbourhood_seconds(); }
@@ -136,16 +137,19 @@ std::unique_ptr<Run<Dim>> make_run_of(const Scene<Dim>& scene, Placement<Dim> pl
   const auto law = [](const LawNumbers& numbers) { return make_law<Normal, Friction>(numbers); };
   LawTable<Law> laws(law(scene.law),
                      scene.pairs.empty() ? 1 : static_cast<int>(scene.materials.size()));
-  for (const PairLaw& pair : scene.pairs) laws.set(pair.a, pair.b, law(pair.law));
+  for (const PairLaw& pair : scene.pairs) {
+    laws.set(pair.a, pair.b, law(pair.law));
+    if (!pair.touch) laws.set_apart(pair.a, pair.b);
+  }
   auto grains = make_grains<Dim, Law::needs>(placement.grains);
 
   std::vector<Grain<Dim>> all = smallest_newcomers(scene);
   all.insert(all.end(), placement.grains.begin(), placement.grains.end());
   const TimeScales scales = time_scales(make_grains<Dim, Law::needs>(all), laws, scene.walls);
   if (scene.time_step.seconds <= 0 && !std::isfinite(scales.contact)) {
-    throw scene.error("time_step",
-                      "nothing in the scene can move, so no contact sets a step; give one in "
-                      "seconds, or a grain that is not pinned");
+    throw scene.error("time_step", why_no_contact(scene) +
+                                       ", so no contact sets a step; give one in seconds, "
+                                       "or a grain that is not pinned");
   }
   Scene<Dim> resolved = scene;
   if (!(scene.time_step.seconds > 0)) {

@@ -13,6 +13,24 @@ namespace {
 /// finds none waits for the next look.
 constexpr int kTries = 100;
 
+/// Whether a straight way is known to meet a region: one with an end that is not a number is not.
+template <int Dim>
+bool meets(const Region<Dim>& region, const Vec<Dim>& from, const Vec<Dim>& to) {
+  if (!(to - from).allFinite()) return false;
+  double first = 0, last = 1;  // the part of the way that lies in it, direction by direction
+  for (int d = 0; d < Dim; ++d) {
+    const double way = to[d] - from[d];
+    if (way == 0) {
+      if (!(from[d] >= region.low[d] && from[d] <= region.high[d])) return false;
+      continue;
+    }
+    const double a = (region.low[d] - from[d]) / way, b = (region.high[d] - from[d]) / way;
+    first = std::max(first, std::min(a, b));
+    last = std::min(last, std::max(a, b));
+  }
+  return first <= last;
+}
+
 template <int Dim>
 bool inside(const Region<Dim>& region, const Vec<Dim>& x) {
   return (x.array() >= region.low.array()).all() && (x.array() <= region.high.array()).all();
@@ -78,6 +96,12 @@ void Traffic<Dim>::persist(StateVisitor visit) {
   if (ids.size() != times.size()) throw SceneError("its lost grains do not fit together");
   counts_.first_lost.clear();
   for (std::size_t k = 0; k < ids.size(); ++k) counts_.first_lost.push_back({ids[k], times[k]});
+  visit("before", before_);
+}
+
+template <int Dim>
+void Traffic<Dim>::remember(const Run<Dim>& run) {
+  before_ = run.positions();
 }
 
 template <int Dim>
@@ -85,7 +109,8 @@ bool Traffic<Dim>::leaves(const Run<Dim>& run, int number) {
   if (run.pinned()[number]) return false;
   const Vec<Dim> x = run.positions().col(number);
   for (std::size_t k = 0; k < scene_.outlets.size(); ++k) {
-    if (!inside(scene_.outlets[k].region, x)) continue;
+    const Region<Dim>& region = scene_.outlets[k].region;
+    if (!inside(region, x) && !meets<Dim>(region, before_.col(number), x)) continue;
     ++counts_.outlets[k].grains;
     counts_.outlets[k].mass += run.masses()[number];
     return true;

@@ -41,8 +41,11 @@ class Traffic {
     std::vector<Grain<Dim>> newcomers;  ///< they overlap with nothing
     std::vector<int> groups;            ///< of the newcomers, see Run::groups
   };
-  /// Who leaves and comes at this instant; it is counted at once.
+  /// Who leaves and comes at this instant; it is counted at once. Also who has passed through an
+  /// outlet since `remember` was called last leaves.
   Change look(const Run<Dim>& run);
+  /// Takes note of where all grains are, to be called at the start and after each look.
+  void remember(const Run<Dim>& run);
 
   const TrafficCounts& counts() const { return counts_; }  ///< so far
 
@@ -61,6 +64,7 @@ class Traffic {
 
   const Scene<Dim>& scene_;
   std::vector<Source> sources_;  // of the inlets
+  Columns<Dim> before_;          // where all grains were at the last look
   TrafficCounts counts_;
 };
 

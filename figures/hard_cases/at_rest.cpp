@@ -196,8 +196,8 @@ GiantAndDust giant_and_dust(const StopCheck& check_stop) {
   dust.name = "dust";
   dust.count = 300;
   dust.radius = UniformRadius{0.8 * kDust, kDust};
-  dust.low = {kLow, 0};
-  dust.high = {kHigh, kHigh * kHigh / 2};
+  dust.region.low = {kLow, 0};
+  dust.region.high = {kHigh, kHigh * kHigh / 2};
   dust.arrangement = Arrangement::random;
   scene.fills.push_back(dust);
   const auto run = make_run(scene, 1);

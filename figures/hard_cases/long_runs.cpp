@@ -52,8 +52,8 @@ Pile pile(FrictionModel friction, std::int64_t steps, const StopCheck& check_sto
   column.name = "column";
   column.count = kAcross * kLayers;
   column.radius = UniformRadius{0.8 * kRadius, kRadius};
-  column.low = {middle - half, kRadius};
-  column.high = {middle + half, kRadius * (1 + 2.1 * kLayers)};
+  column.region.low = {middle - half, kRadius};
+  column.region.high = {middle + half, kRadius * (1 + 2.1 * kLayers)};
   scene.fills.push_back(column);
   scene.walls.push_back(Wall<2>::half_space("left", {0, 0}, {1, 0}));
   scene.walls.push_back(Wall<2>::half_space("right", {2 * middle, 0}, {-1, 0}));
@@ -98,8 +98,8 @@ Gas elastic_gas(std::int64_t grain_steps, const StopCheck& check_stop) {
   gas.name = "gas";
   gas.count = kGrains;
   gas.radius = kRadius;
-  gas.low = {0, 0};
-  gas.high = {kSide, kSide};
+  gas.region.low = {0, 0};
+  gas.region.high = {kSide, kSide};
   gas.arrangement = Arrangement::random;
   gas.random_speed = 2;
   scene.fills.push_back(gas);

@@ -145,8 +145,8 @@ Shrinking shrinking_box(const std::filesystem::path& folder, const StopCheck& ch
   grains.name = "grains";
   grains.count = 100;
   grains.radius = UniformRadius{0.7 * kRadius, kRadius};
-  grains.low = {0, 0};
-  grains.high = {kSide, kSide};
+  grains.region.low = {0, 0};
+  grains.region.high = {kSide, kSide};
   grains.arrangement = Arrangement::random;
   scene.fills.push_back(grains);
   add_tub<2>(scene, {0, 0}, kSide);

@@ -26,7 +26,7 @@ void watch(Run<Dim>& run, std::int64_t steps, Outcome& outcome, const StopCheck&
     for (std::int64_t k = 1; k <= steps; ++k) {
       run.step();
       if (k % every != 0 && k != steps) continue;
-      audit.check(run.positions(), run.radii(), run.near_pairs(), run.pinned());
+      audit.check(run.positions(), run.radii(), run.near_pairs(), run.rules());
       if (after_audit) after_audit();
       if (check_stop) check_stop();
     }

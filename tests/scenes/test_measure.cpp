@@ -49,7 +49,7 @@ void add_grain(Scene<Dim>& scene, const Vec<Dim>& at, double radius) {
 template <int Dim>
 void measure(Scene<Dim>& scene, const std::string& name, const Vec<Dim>& low, const Vec<Dim>& high,
              int slices = 1, int axis = Dim - 1) {
-  scene.measures.push_back({name, low, high, slices, axis});
+  scene.measures.push_back({name, {low, high}, slices, axis});
 }
 
 /// The first row of a scene's series, by the names of its columns.
@@ -211,7 +211,7 @@ TEST_SUITE("measure") {
     CHECK(scene.measures[0].name == "bed");
     CHECK(scene.measures[0].slices == 4);
     CHECK(scene.measures[0].axis == 0);
-    CHECK(scene.measures[0].high == Vec<2>(0.1, 1));
+    CHECK(scene.measures[0].region.high == Vec<2>(0.1, 1));
     CHECK(scene.measures[1].name == "measure 2");
     CHECK(scene.measures[1].axis == 1);
     CHECK(to_toml(parse_scene<2>(to_toml(scene), "s.toml")) == to_toml(scene));

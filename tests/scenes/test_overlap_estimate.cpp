@@ -170,16 +170,16 @@ TEST_SUITE("overlap estimate") {
         Fill<Dim> fill;
         fill.radius = UniformRadius{0.008, 0.01};
         const double width = Dim == 2 ? 0.2 : 0.08;
-        fill.high.setConstant(width);
-        fill.low[Dim - 1] = drop;
-        fill.high[Dim - 1] = drop + (Dim == 2 ? 0.6 : 0.3);
+        fill.region.high.setConstant(width);
+        fill.region.low[Dim - 1] = drop;
+        fill.region.high[Dim - 1] = drop + (Dim == 2 ? 0.6 : 0.3);
         scene.fills = {fill};
         for (int d = 0; d + 1 < Dim; ++d) {
           const std::string name = std::to_string(d);
           scene.walls.push_back(
               Wall<Dim>::half_space("low" + name, Vec<Dim>::Zero(), Vec<Dim>::Unit(d)));
           scene.walls.push_back(
-              Wall<Dim>::half_space("high" + name, fill.high, -Vec<Dim>::Unit(d)));
+              Wall<Dim>::half_space("high" + name, fill.region.high, -Vec<Dim>::Unit(d)));
         }
 
         const OverlapEstimate guess = estimate_of(scene);

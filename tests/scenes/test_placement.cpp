@@ -33,8 +33,8 @@ Scene<Dim> box(Arrangement arrangement, int count) {
   Fill<Dim> fill;
   fill.count = count;
   fill.radius = UniformRadius{0.02, 0.05};
-  fill.low.setZero();
-  fill.high.setOnes();
+  fill.region.low.setZero();
+  fill.region.high.setOnes();
   fill.arrangement = arrangement;
   scene.fills = {fill};
   PlacedGrain<Dim> big;
@@ -78,7 +78,7 @@ Scene<Dim> crowd(const std::vector<std::pair<int, double>>& groups) {
     fill.name = "r = " + shortest(radius);
     fill.count = count;
     fill.radius = radius;
-    fill.high.setOnes();
+    fill.region.high.setOnes();
     fill.arrangement = Arrangement::random;
     scene.fills.push_back(fill);
   }
@@ -98,7 +98,7 @@ std::vector<double> many_radii(const RadiusLaw& law) {
   Fill<Dim> fill;
   fill.count = 40'000;
   fill.radius = law;
-  fill.high.setConstant(Dim == 2 ? 2.0 : 0.4);  // room for as many of 4 mm
+  fill.region.high.setConstant(Dim == 2 ? 2.0 : 0.4);  // room for as many of 4 mm
   scene.fills = {fill};
   std::vector<double> radii;
   for (const auto& grain : place_grains(scene).grains) radii.push_back(grain.radius);

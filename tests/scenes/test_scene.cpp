@@ -46,7 +46,7 @@ TEST_SUITE("scene") {
     CHECK(s.materials.at(0).name == "rock");
     CHECK(s.materials.at(1).density == 2000);
     CHECK(std::get<UniformRadius>(s.fills.at(0).radius).low == 0.008);
-    CHECK(s.fills.at(0).high == Vec<2>(0.1, 0.2));
+    CHECK(s.fills.at(0).region.high == Vec<2>(0.1, 0.2));
     CHECK(s.grains.at(1).velocity == Vec<2>(0, -2));
     CHECK(s.walls.at(0).name == "floor");
   }

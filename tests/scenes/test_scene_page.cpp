@@ -235,6 +235,8 @@ high = [1, 1]
       moving("type = \"steady\"\nvelocity = [0, 1]\n"),
       moving("type = \"shake\"\namplitude = [0, 1]\nfrequency = 1\n"),
       moving("type = \"piston\"\nmass = 1\nload = [0, 1]\n"),
+      moving("type = \"piston\"\nmass = 1\npressure = 1\nbetween = [\"left\", \"right\"]\n"),
+      with(plain, "[[measure]]\n", "[[measure]]\npoint = [0, 0]\nnormal = [0, 1]\n"),
   };
 }
 

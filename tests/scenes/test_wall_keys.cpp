@@ -148,6 +148,15 @@ TEST_SUITE("walls in scenes") {
     const Scene<3> again = parse_scene<3>(to_toml(scene), "again.toml");
     CHECK(again.walls[0].corners() == scene.walls[0].corners());
 
+    // Some programs write text in capitals.
+    std::ofstream(folder.path / "capitals.stl")
+        << "SOLID S\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 1E0\nVERTEX 1 0 1\nVERTEX 0 1 1\n"
+           "ENDLOOP\nENDFACET\nENDSOLID S\n";
+    std::ofstream(folder.path / "c.toml") << kSpace << "[[wall]]\nmesh = \"capitals.stl\"\n";
+    const Scene<3> capitals = read_scene<3>(folder.path / "c.toml");
+    CHECK(capitals.walls.at(0).piece_count() == 1);
+    CHECK(capitals.walls[0].foot({0.25, 0.25, 3}).distance == 2);
+
     const auto error = [&](const std::string& name) {
       std::ofstream(folder.path / "t.toml") << kSpace << "[[wall]]\nmesh = \"" << name << "\"\n";
       return scene_error_of([&] { read_scene<3>(folder.path / "t.toml"); });
@@ -231,7 +240,16 @@ TEST_SUITE("walls in scenes") {
     CHECK(has(in_plane("point = [0, 0]\nradii = [1, 2]\n"), "round wall in space"));
     CHECK(has(
         in_plane("point = [0, 0]\nnormal = [0, 1]\nturning = { type = \"steady\", rate = 1 }\n"),
-        "what has no end turns about its normal alone; give segments"));
+        "a line without an end does not turn; give from and to, or points"));
+    for (const std::string fast :
+         {"type = \"swing\", angle = 1e308, frequency = 1", "type = \"steady\", rate = -1e200",
+          "type = \"swing\", angle = 1e60, frequency = 1e60"}) {
+      CHECK(has(in_plane("from = [0, 0]\nto = [0, 1]\nturning = { " + fast + " }\n"),
+                "wall[0].turning: it turns faster than numbers tell; slow it down"));
+    }
+    CHECK(has(in_space("point = [0, 0, 0]\nnormal = [0, 0, 1]\n"
+                       "turning = { type = \"steady\", rate = 1, axis = [0, 1, 0] }\n"),
+              "what has no end turns about its normal alone; give plates"));
     CHECK(has(in_plane("from = [0, 0]\nto = [0, 1]\n"
                        "turning = { type = \"steady\", rate = 1, axis = [0, 0, 1] }\n"),
               "in the plane all turns about the same"));

@@ -25,7 +25,8 @@ struct Placement {
 /// grain already takes are passed over. A random arrangement tries places until one is free, large
 /// grains first. Grains that find none are placed at random all the same, and everything that was
 /// placed at random in the same region, by this fill or an earlier one, is pushed apart; all other
-/// grains stay. Nothing overlaps in the end.
+/// grains stay. Nothing overlaps in the end, be it of materials that touch or not; only grains
+/// placed by hand or listed in files may overlap what they do not touch.
 ///
 /// @throws SceneError if a region does not hold its grains (the message says how many a lattice
 /// held, or which solid fraction was asked for and what the limit is), or if grains placed by hand

@@ -5,9 +5,10 @@
 
 #include <lagrain/any_neighbourhood.hpp>
 #include <lagrain/audit.hpp>
+#include <lagrain/contact_rules.hpp>
 #include <lagrain/observe.hpp>
-#include <lagrain/pinned_grains.hpp>
 #include <lagrain/placement.hpp>
+#include <lagrain/plane_flow.hpp>
 #include <lagrain/scene.hpp>
 #include <lagrain/state.hpp>
 #include <lagrain/time_step.hpp>
@@ -110,6 +111,7 @@ class Run {
   virtual ContactStatistics statistics() const = 0;                ///< of the contacts now
   virtual Ledger ledger() const = 0;                               ///< where the energy is now
   virtual std::vector<Pair> near_pairs() const = 0;                ///< sorted
+  virtual std::vector<WallPair> near_wall_pairs() const = 0;       ///< sorted
   virtual std::int64_t refreshes() const = 0;                      ///< of the near list
   virtual const AnyNeighbourhood<Dim>& neighbourhood() const = 0;  ///< what proposes pairs
   /// Wall-clock time spent on knowing the near pairs [s].
@@ -136,9 +138,12 @@ class Run {
   const std::vector<int>& materials() const { return materials_; }  ///< N, of the scene's
   /// N: index into the scene's fills and then inlets; -1 for a grain placed by hand.
   const std::vector<int>& groups() const { return groups_; }
-  const PinnedGrains& pinned() const { return pinned_; }  ///< what no force moves
-  bool drives() const { return drives_; }                 ///< whether any grain is driven
-  const Ledger& start() const { return start_; }          ///< the ledger at time 0
+  const ContactRules& rules() const { return rules_; }            ///< who may touch whom
+  const PinnedGrains& pinned() const { return rules_.pinned(); }  ///< what no force moves
+  bool drives() const { return drives_; }                         ///< whether any grain is driven
+  /// What has passed through the scene's planes since the start, one entry for each of them.
+  std::vector<PlaneFlow<Dim>> flows() const;
+  const Ledger& start() const { return start_; }                         ///< the ledger at time 0
   double energy_residual() const { return residual(ledger(), start_); }  ///< [J]
   const ContactAudit<Dim>& audit() const { return audit_; }  ///< what audits have found so far
 
@@ -159,12 +164,16 @@ class Run {
   virtual bool near_is_valid() const = 0;
   void check_contacts();
   void look_after_traffic();
+  void look_at_planes(std::vector<PlaneFlow<Dim>>& flows) const;
+  /// @param pinned  of each grain
+  void set_rules(const std::vector<bool>& pinned);
 
   Scene<Dim> scene_;
   std::unique_ptr<detail::Traffic<Dim>> traffic_;  // null where nobody comes or leaves
   std::vector<int> materials_;
   std::vector<int> groups_;
-  PinnedGrains pinned_;
+  ContactRules rules_;
+  std::vector<PlaneFlow<Dim>> flows_;  // as they were looked at last
   bool drives_ = false;
   std::int64_t steps_planned_ = 0;
   Ledger start_;

@@ -8,10 +8,12 @@
 #include <lagrain/check.hpp>
 #include <lagrain/contact_laws.hpp>
 #include <lagrain/gravity.hpp>
+#include <lagrain/law_table.hpp>
 #include <lagrain/touch.hpp>
 #include <lagrain/vec.hpp>
 #include <lagrain/walls.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -39,9 +41,10 @@ std::string_view name_of(NeighbourhoodModel model);
 
 /// Numbers that hold between two materials instead of the scene's own.
 struct PairLaw {
-  int a = 0;       ///< material
-  int b = 0;       ///< material
-  LawNumbers law;  ///< the numbers of the law
+  int a = 0;          ///< material
+  int b = 0;          ///< material
+  LawNumbers law;     ///< the numbers of the law
+  bool touch = true;  ///< false: what is made of the two goes through each other
 };
 
 /// What grains and walls are made of.
@@ -80,6 +83,13 @@ using RadiusLaw = std::variant<double, UniformRadius, ListedRadius, SieveCurve>;
 /// How a fill places its grains.
 enum class Arrangement { lattice, random };
 
+/// An axis-parallel box.
+template <int Dim>
+struct Region {
+  Vec<Dim> low = Vec<Dim>::Zero();   ///< corner with the lowest coordinates [m]
+  Vec<Dim> high = Vec<Dim>::Zero();  ///< corner with the highest ones [m]
+};
+
 /// A group of grains that fills an axis-parallel region.
 template <int Dim>
 struct Fill {
@@ -87,21 +97,13 @@ struct Fill {
   int material = 0;                                ///< place among the materials
   std::optional<int> count;                        ///< none: as many as the lattice holds
   RadiusLaw radius;                                ///< of its grains
-  Vec<Dim> low = Vec<Dim>::Zero();                 ///< [m]
-  Vec<Dim> high = Vec<Dim>::Zero();                ///< [m]
+  Region<Dim> region;                              ///< that holds them
   Arrangement arrangement = Arrangement::lattice;  ///< rows, or places at random
   Vec<Dim> velocity = Vec<Dim>::Zero();            ///< [m/s]
   double random_speed = 0;                         ///< added, in a random direction [m/s]
   SpinVec<Dim> spin = SpinVec<Dim>::Zero();        ///< [rad/s]
   bool pinned = false;                             ///< all of them stay where they are
   bool driven = false;                             ///< all of them keep velocity and spin
-};
-
-/// An axis-parallel box.
-template <int Dim>
-struct Region {
-  Vec<Dim> low = Vec<Dim>::Zero();   ///< corner with the lowest coordinates [m]
-  Vec<Dim> high = Vec<Dim>::Zero();  ///< corner with the highest ones [m]
 };
 
 /// Where grains come in, one by one.
@@ -161,11 +163,19 @@ struct TimeStep {
 /// A region whose stress and solid fraction are columns of the series.
 template <int Dim>
 struct MeasuredRegion {
-  std::string name;                  ///< as the scene calls it
-  Vec<Dim> low = Vec<Dim>::Zero();   ///< [m]
-  Vec<Dim> high = Vec<Dim>::Zero();  ///< [m]
-  int slices = 1;                    ///< equal parts, each measured for itself
-  int axis = Dim - 1;                ///< along which they follow each other
+  std::string name;    ///< as the scene calls it
+  Region<Dim> region;  ///< that is measured
+  int slices = 1;      ///< equal parts, each measured for itself
+  int axis = Dim - 1;  ///< along which they follow each other
+};
+
+/// A plane; what passes through it is columns of the series.
+template <int Dim>
+struct MeasuredPlane {
+  std::string name;                   ///< as the scene calls it
+  Vec<Dim> point;                     ///< on it [m]
+  Vec<Dim> normal;                    ///< unit, along which passing counts [-]
+  std::optional<Region<Dim>> region;  ///< only what passes in it counts; none: all
 };
 
 /// What a run writes, and how often.
@@ -209,7 +219,18 @@ struct Scene {
   std::optional<Region<Dim>> domain;          ///< whose leavers are taken out; none: no limit
   std::vector<Wall<Dim>> walls;               ///< single ones, then the sides of boxes
   std::vector<MeasuredRegion<Dim>> measures;  ///< columns of the series
+  std::vector<MeasuredPlane<Dim>> planes;     ///< more columns
   OutputPlan output;                          ///< what is written
+
+  /// The materials that do not touch.
+  MaterialsApart apart() const {
+    MaterialsApart apart;
+    for (const PairLaw& pair : pairs) {
+      if (!pair.touch)
+        apart.add(static_cast<std::size_t>(pair.a), static_cast<std::size_t>(pair.b));
+    }
+    return apart;
+  }
 
   /// "file:line: key: message", with what is known of it.
   SceneError error(const std::string& key, const std::string& message) const {
