@@ -26,6 +26,8 @@ FigureResult draw_figure15(const FigureOptions& options);
 FigureResult draw_figure16(const FigureOptions& options);
 FigureResult draw_figure17(const FigureOptions& options);
 FigureResult draw_figure18(const FigureOptions& options);
+FigureResult draw_figure19(const FigureOptions& options);
+FigureResult draw_figure21(const FigureOptions& options);
 }  // namespace figures
 #endif
 
@@ -52,6 +54,8 @@ const std::vector<Figure>& all_figures() {
       {17, "Box2D and lagrain in bulk", figures::draw_figure17, Page::report},
 #endif
       {18, "Hard cases", figures::draw_figure18, Page::report},
+      {19, "Impacts of one and two spheres", figures::draw_figure19, Page::report},
+      {21, "Janssen's silo, angle of repose, biaxial test", figures::draw_figure21, Page::report},
 #endif
   };
   return all;

@@ -345,7 +345,9 @@ TEST_SUITE("program") {
   }
 
   TEST_CASE("every scene of the repository is valid, its step is safe, and it starts to run") {
-    for (const auto& entry : fs::directory_iterator(LAGRAIN_SCENES)) {
+    for (const auto& entry : fs::recursive_directory_iterator(LAGRAIN_SCENES)) {
+      // Grains of a scene may stand in a file beside it.
+      if (entry.is_directory() || entry.path().extension() == ".csv") continue;
       CAPTURE(entry.path().string());
       REQUIRE(entry.path().extension() == ".toml");
       if (scene_dimension(entry.path()) == 2) {
