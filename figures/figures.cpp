@@ -26,6 +26,7 @@ FigureResult draw_figure15(const FigureOptions& options);
 FigureResult draw_figure16(const FigureOptions& options);
 FigureResult draw_figure17(const FigureOptions& options);
 FigureResult draw_figure18(const FigureOptions& options);
+FigureResult draw_figure20(const FigureOptions& options);
 }  // namespace figures
 #endif
 
@@ -52,6 +53,7 @@ const std::vector<Figure>& all_figures() {
       {17, "Box2D and lagrain in bulk", figures::draw_figure17, Page::report},
 #endif
       {18, "Hard cases", figures::draw_figure18, Page::report},
+      {20, "Bulk processes: silo, drum, penetration", figures::draw_figure20, Page::report},
 #endif
   };
   return all;
