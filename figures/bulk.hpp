@@ -83,8 +83,8 @@ Beverloo fit_beverloo(const std::vector<double>& orifice_over_grain,
 struct Drum {
   RunReport report;
   std::vector<double> time;  ///< [s]
-  /// Grains of M1 and of M2 in a quadrant, against time: that above on the side where the wall rises
-  /// (zone 1), and the opposite one (zone 2).
+  /// Grains of M1 and of M2 in a quadrant, against time: in zone 1, above on the side where the
+  /// wall rises, and in zone 2, which is opposite.
   std::array<std::array<std::vector<double>, 2>, 2> count;
   std::array<int, 2> grains{};  ///< of M1, of M2
   /// About the axis, means between a sample and the one before [N m]:

@@ -27,14 +27,14 @@ namespace lagrain::figures {
 namespace {
 
 // What others have got. Dosta et al. ran eight codes from beds that all of them shared; the public
-// pages of peclet-examples (computational-chemical-engineering, benchmarks/dem-bulk-dosta2024) quote
-// the mean over the codes, and list what MUSEN and LIGGGHTS gave there from the same beds.
+// pages of peclet-examples (computational-chemical-engineering, benchmarks/dem-bulk-dosta2024)
+// quote the mean over the codes, and list what MUSEN and LIGGGHTS gave from the same beds.
 constexpr double kPublishedGrain = 0.004;                           // diameter in the silo [m]
 constexpr double kPublishedLarge = 23200, kPublishedSpread = 0.05;  // D = 60 mm, mean [1/s]
 constexpr double kPublishedSmall = 7700;                            // D = 40 mm, MUSEN [1/s]
 constexpr double kPublishedFall = 0.0907;                     // of the ball, MUSEN and LIGGGHTS [m]
 constexpr std::array<double, 2> kPublishedTroughs{1.4, 3.4};  // of M1 in zone 2, LIGGGHTS [s]
-constexpr std::array<double, 2> kPublishedPeaks{17000, 12200};  // the maxima that follow them
+constexpr std::array<double, 2> kPublishedPeaks{17000, 12200};  // its two peaks
 constexpr double kPublishedSmallGrains = 30000;                 // of M1 in the drum
 
 constexpr double kYoungOverEffective = 2 * (1 - 0.2 * 0.2);  // E / E* at a Poisson ratio of 0.2
@@ -65,7 +65,7 @@ struct Plan {
   double drum = 1;             ///< how much coarser
   std::vector<BallJob> balls;  ///< the first is drawn; of the last two one is softer
 
-  /// The silo that differs from the last one by its modulus alone.
+  /// Which silo differs from the last one by its moduli alone.
   std::size_t stiff_silo() const {
     std::size_t k = 0;
     while (silos[k].coarse != silos.back().coarse || silos[k].orifice != silos.back().orifice) ++k;
@@ -98,7 +98,7 @@ struct Figure20 {
   Beverloo law;
   ImpactLaw impact;
 
-  /// D / d and W in the law's units, of the runs with the published friction and the first modulus.
+  /// D / d and W in the law's units, of the runs with the scene's moduli.
   std::pair<std::vector<double>, std::vector<double>> flows() const {
     std::pair<std::vector<double>, std::vector<double>> all;
     for (std::size_t k = 0; k < silos.size(); ++k) {
@@ -491,7 +491,7 @@ Table runs_table(const Figure20& figure) {
   return table;
 }
 
-/// The steps of a run from another one, both with the same grains but for the modulus.
+/// How much a number of a softer run differs from that of another one: "-3 %".
 std::string change(double softer, double other) {
   return (softer < other ? "" : "+") + percent(softer / other - 1);
 }
@@ -509,13 +509,9 @@ Table published_table(const Figure20& figure) {
         figure.law.c * std::pow(std::max(0.0, orifice / kPublishedGrain - figure.law.k), 2.5);
     return grouped(std::lround(flow / beverloo_flow(1, kPublishedGrain, figure.silos[0].solid)));
   };
-  const Silo& first = figure.silos[0];
-  const std::string run = first.grain == kPublishedGrain && first.orifice == 0.06
-                              ? grouped(std::lround(first.rate)) + "; "
-                              : "";
   add("grains of 4 mm per second through 60 mm",
       "23,200, mean of eight codes, which agree within 5 %; MUSEN 24,200, LIGGGHTS 24,500",
-      run + by_law(0.06) + " by the law fitted here");
+      by_law(0.06) + " by the law fitted here");
   add("the same through 40 mm", "MUSEN 7,700", by_law(0.04) + " by the law fitted here");
   add("Beverloo's constants", "C 0.58, k 1.4 for a flat bottom",
       "C " + with_error(figure.law.c, figure.law.c_error) + ", k " +
@@ -529,10 +525,10 @@ Table published_table(const Figure20& figure) {
   add("drum: when zone 2 is empty of M1",
       "LIGGGHTS " + fixed(kPublishedTroughs[0], 1) + " s, " + fixed(kPublishedTroughs[1], 1) + " s",
       troughs.empty() ? "never, with grains as large as these" : troughs);
-  add("how much of M1 is there at most after each",
+  add("share of M1 there at its peaks",
       "LIGGGHTS " + percent(kPublishedPeaks[0] / kPublishedSmallGrains) + ", " +
           percent(kPublishedPeaks[1] / kPublishedSmallGrains),
-      peaks);
+      peaks.empty() ? "none" : peaks);
   const Penetration& ball = figure.balls[0];
   add("fall of the ball until it rests, bed of 100,000",
       "MUSEN and LIGGGHTS " + millimetres(kPublishedFall),
@@ -584,24 +580,26 @@ std::string caption_of(const Figure20& figure) {
   const TorqueBalance torque = balance_of(figure.drum);
   return "Three bulk processes with the materials, the walls and the conditions of Dosta et al., "
          "Computer Physics Communications 296 (2024) 109066. Beds are ours, and all moduli are a "
-         "hundredth of the published ones, those of the ball and its bed a fiftieth. (a) A silo with a funnel of 45 degrees, D = " +
+         "hundredth of the published ones, those of the ball and its bed a fiftieth. (a) A silo "
+         "with a funnel of 45 degrees, D = " +
          millimetres(silo.orifice, 2) + ", " + fixed(kSiloPicture, 1) +
-         " s after its gate is gone; cut in half, colours are speeds from 0 (dark) to " +
-         fixed(kFastest, 1) + " m/s. (b, c) A drum of 200 mm at 2 rad/s from its front, " +
-         grouped(figure.drum.grains[0]) + " small grains of M1 (light) and " +
+         " s after its gate is gone; cut in half, colours are speeds. (b, c) A drum of 200 mm at 2 "
+         "rad/s from its front, " +
+         grouped(figure.drum.grains[0]) + " small grains of M1 and " +
          grouped(figure.drum.grains[1]) + " large ones of M2, " + rounded(figure.plan.drum, 2) +
-         " times as large as published. (d) A steel ball of 20 mm, 0.1 s after its release at 5 m/s, in " +
+         " times as large as published. (d) A steel ball of 20 mm, 0.1 s after its release at 5 "
+         "m/s, in " +
          grouped(ball.report.grains - 1) + " grains of " + millimetres(2 * ball.report.radius) +
          ", " + millimetres(ball.depth(ball.time.size() - 1)) +
-         " deep; cut in half, colours are layers before the impact. (e) Grains above the orifice; D and d in mm. "
-         "(f) Grains in the quadrant above the rising side of the drum (zone 1) and in the "
-         "opposite one (zone 2). (g) Fall of the ball since it was 150.2 mm above the floor. (h) Flow "
-         "in the units of Beverloo's law, with the bulk density that the bed had at rest. What is "
-         "called published are the mean of the paper's codes and runs of MUSEN and LIGGGHTS from "
-         "its beds, in grains of the published sizes, as the public pages of peclet-examples quote "
-         "and list them. (i) The torque of the drum is the moment of the grains' weight (R: distance of the "
-         "centre of mass from the axis, alpha: its angle from below) and the change of their "
-         "angular momentum L: root mean square difference " +
+         " deep; cut in half, colours are layers before the impact. (e) Grains above the orifice; "
+         "D and d in mm. (f) Grains in the quadrant above the rising side of the drum (zone 1) and "
+         "in the opposite one (zone 2). (g) Fall of the ball since it was 150.2 mm above the "
+         "floor. (h) Flow in the units of Beverloo's law, with the bulk density that the bed had "
+         "at rest. What is called published are the mean of the paper's codes and runs of MUSEN "
+         "and LIGGGHTS from its beds, in grains of the published sizes, as the public pages of "
+         "peclet-examples quote and list them. (i) The torque of the drum is the moment of the "
+         "grains' weight (R: distance of the centre of mass from the axis, alpha: its angle from "
+         "below) and the change of their angular momentum L: root mean square difference " +
          percent(torque.error) + " of the mean torque, " + rounded(1e3 * torque.torque) +
          " N mm; the weight's mean moment is " + rounded(1e3 * torque.weight) +
          " N mm. (j) Speed of the ball against depth, and the force law of Katsuragi and Durian, "
