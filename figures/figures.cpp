@@ -27,6 +27,7 @@ FigureResult draw_figure16(const FigureOptions& options);
 FigureResult draw_figure17(const FigureOptions& options);
 FigureResult draw_figure18(const FigureOptions& options);
 FigureResult draw_figure19(const FigureOptions& options);
+FigureResult draw_figure20(const FigureOptions& options);
 FigureResult draw_figure21(const FigureOptions& options);
 }  // namespace figures
 #endif
@@ -55,6 +56,7 @@ const std::vector<Figure>& all_figures() {
 #endif
       {18, "Hard cases", figures::draw_figure18, Page::report},
       {19, "Impacts of one and two spheres", figures::draw_figure19, Page::report},
+      {20, "Bulk processes: silo, drum, penetration", figures::draw_figure20, Page::report},
       {21, "Janssen's silo, angle of repose, biaxial test", figures::draw_figure21, Page::report},
 #endif
   };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "packing.hpp"
 
+#include "together.hpp"
+
 #include <lagrain/csv.hpp>
 #include <lagrain/laguerre3.hpp>
 #include <lagrain/numbers.hpp>
@@ -11,14 +13,10 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <map>
-#include <mutex>
-#include <thread>
 #include <tuple>
 #include <utility>
 
@@ -48,8 +46,7 @@ Eigen::AlignedBox3d inside_of(const std::vector<Wall<3>>& walls) {
 
 class Runner {
  public:
-  Runner(const PackingJob& job, const std::atomic<bool>& stop, std::atomic<double>& done)
-      : job_(job), stop_(stop), done_(done) {}
+  Runner(const PackingJob& job, const Watch& watch) : job_(job), watch_(watch) {}
 
   Packing run() {
     const auto start = std::chrono::steady_clock::now();
@@ -60,7 +57,7 @@ class Runner {
     const double solid = solid_volume(run->radii());
     double next = 0;
     while (!run->finished()) {
-      if (stop_) return packing;
+      if (!watch_(run->time() / job_.scene.duration)) return packing;
       run->step();
       if (run->time() < next && !run->finished()) continue;
       next += kSampleEvery;
@@ -68,7 +65,6 @@ class Runner {
       packing.density.push_back(solid / inside_of(run->walls()).volume());
       packing.largest_overlap =
           std::max(packing.largest_overlap, run->statistics().largest_overlap);
-      done_ = run->time() / job_.scene.duration;
     }
     packing.position = run->positions();
     packing.radius = run->radii();
@@ -91,8 +87,7 @@ class Runner {
 
  private:
   const PackingJob& job_;
-  const std::atomic<bool>& stop_;
-  std::atomic<double>& done_;
+  const Watch& watch_;
 };
 
 /// About how long a scene takes: the contact time, and with it the step, goes with the radius.
@@ -163,38 +158,15 @@ std::vector<Packing> run_packings(const std::vector<PackingJob>& jobs, const Fig
   });
 
   std::vector<Packing> results(jobs.size());
-  std::vector<std::atomic<double>> done(jobs.size());
-  std::atomic<bool> stop = false;
-  std::atomic<std::size_t> next = 0, finished = 0;
-  std::mutex failure_guard;
-  std::exception_ptr failure;
-  const auto work = [&] {
-    for (std::size_t k = next++; k < open.size(); k = next++) {
-      try {
-        results[open[k]] = Runner(jobs[open[k]], stop, done[open[k]]).run();
-      } catch (...) {
-        const std::lock_guard lock(failure_guard);
-        if (!failure) failure = std::current_exception();
-        stop = true;
-      }
-      ++finished;
-    }
+  const auto run_job = [&](std::size_t k, const Watch& watch) {
+    results[open[k]] = Runner(jobs[open[k]], watch).run();
   };
-  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-  std::vector<std::jthread> threads;
-  for (std::size_t k = 0; k < std::min(cores, open.size()); ++k) threads.emplace_back(work);
-  while (finished < open.size()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    if (options.stop()) stop = true;
-    double sum = 0;
-    for (const std::size_t k : open) sum += done[k];
-    options.progress(sum / static_cast<double>(open.size()),
-                     std::to_string(open.size()) + " packings");
+  try {
+    do_together(open.size(), run_job, options, "packings");
+  } catch (...) {
+    write_file(csv, density_csv(results));
+    throw;
   }
-  threads.clear();
-  if (stop || failure) write_file(csv, density_csv(results));
-  if (failure) std::rethrow_exception(failure);
-  if (stop) throw Interrupted();
   for (const std::size_t k : open) kept[keys[k]] = results[k];
   for (std::size_t k = 0; k < jobs.size(); ++k) {
     results[k] = kept.at(keys[k]);
