@@ -287,7 +287,7 @@ Penetration run_penetration(const Scene<3>& scene, const Watch& watch) {
     if (p.time.empty()) {
       released = run.time() - (kRelease - height) / speed;
       const double top = surface_of(run);
-      const Fill<3>& bed = run.scene().fills[0];
+      const Region<3>& bed = run.scene().fills[0].region;
       const int grains = run.count() - 1;  // the ball comes first
       p.solid = bulk_density(x.rightCols(grains), run.radii().tail(grains),
                              {bed.low, Vec<3>(bed.high.x(), bed.high.y(), top)})

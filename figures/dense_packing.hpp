@@ -32,7 +32,7 @@ std::vector<Grain<Dim>> dense_packing(int count, std::uint64_t seed) {
   fill.name = "dense";
   fill.count = count;
   fill.radius = UniformRadius{kLeast, 1};
-  fill.high = Vec<Dim>::Constant(side);
+  fill.region.high = Vec<Dim>::Constant(side);
   fill.arrangement = Arrangement::random;
   scene.fills = {fill};
   return place_grains(scene).grains;

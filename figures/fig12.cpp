@@ -54,8 +54,7 @@ Scene<Dim> gas(int count, double ratio) {
   const Fill<Dim> small{.name = "small",
                         .count = count,
                         .radius = kR,
-                        .low = Vec<Dim>::Zero(),
-                        .high = far,
+                        .region = {Vec<Dim>::Zero(), far},
                         .arrangement = Arrangement::random,
                         .random_speed = 0.5};
   scene.fills = {small};

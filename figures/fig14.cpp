@@ -280,7 +280,7 @@ Scene<Dim> shaken_grains(bool quick, double fraction) {
   fill.name = "grains";
   fill.count = shaken_count(quick);
   fill.radius = UniformRadius{0.7 * kRadius, kRadius};
-  fill.high = Vec<Dim>::Constant(width);
+  fill.region.high = Vec<Dim>::Constant(width);
   scene.fills = {fill};
   const Vec<Dim> origin = Vec<Dim>::Zero();
   scene.walls = {Wall<Dim>::half_space("floor", origin, Vec<Dim>::Unit(Dim - 1))};

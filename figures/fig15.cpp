@@ -62,8 +62,7 @@ Scene<Dim> box_of(int count) {
   scene.fills = {{.name = "grains",
                   .count = count,
                   .radius = UniformRadius{0.95 * kR, kR},
-                  .low = Vec<Dim>::Zero(),
-                  .high = far,
+                  .region = {Vec<Dim>::Zero(), far},
                   .arrangement = Arrangement::lattice}};
   return scene;
 }

@@ -75,8 +75,7 @@ Fill<2> rows(int count, int across, double bottom = 0) {
   return {.name = "rows",
           .count = count,
           .radius = UniformRadius{kSmallest, kLargest},
-          .low = {0, bottom},
-          .high = {across * kCell, bottom + (count / across + 2) * kCell}};
+          .region = {{0, bottom}, {across * kCell, bottom + (count / across + 2) * kCell}}};
 }
 
 /// Loose rows that fall to the floor of a box.
@@ -103,7 +102,6 @@ Scene<2> mixture(int count, double width, double ratio = 10) {
     scene.fills.push_back({.name = "size " + rounded(size),
                            .count = static_cast<int>(share),
                            .radius = size,
-                           .low = {0, 0},
                            .arrangement = Arrangement::random});
     all += share;
     sum += share * size;
@@ -112,7 +110,7 @@ Scene<2> mixture(int count, double width, double ratio = 10) {
   const double unit = all / sum;
   for (Fill<2>& fill : scene.fills) {
     fill.radius = unit * std::get<double>(fill.radius);
-    fill.high = {width, unit * unit * area / (kSolid * width)};
+    fill.region.high = {width, unit * unit * area / (kSolid * width)};
   }
   return scene;
 }

@@ -95,7 +95,8 @@ struct Figure21 {
 void fill_less(Scene<2>& scene, int times) {
   Fill<2>& fill = scene.fills.back();
   fill.count = *fill.count / times;
-  fill.high[1] = fill.low[1] + (fill.high[1] - fill.low[1]) / times;
+  Region<2>& region = fill.region;
+  region.high[1] = region.low[1] + (region.high[1] - region.low[1]) / times;
   scene.law.stiffness /= 2;
   scene.audit = false;
 }
@@ -450,9 +451,10 @@ std::string caption_of(const Figure21& figure) {
          rounded(figure.silo.friction) +
          "; not all of it is mobilised.) (c, d) A tube is lifted, and a heap stays; bars are "
          "standard deviations over flanks. (e to g) Biaxial test of a dense bed between smooth "
-         "walls. The side presses with a constant force, so its pressure grows, by " +
-         percent(test.lateral.back() / test.lateral.front() - 1) +
-         ", as the height falls; both stresses are forces over the lengths as they are. The "
+         "walls. The side holds a pressure, " +
+         rounded(1e-3 * spread_of(test.lateral).mean) +
+         " kPa on average as the grains feel it; both stresses are forces over the lengths as they "
+         "are. The "
          "friction angle peaks at " +
          fixed(strength.peak, 1) + " degrees (strain " + percent(strength.at) +
          "), the last fifth "

@@ -41,9 +41,9 @@ concept BodyForce = std::copy_constructible<F> &&
   { f.on(grain, 0.0) } -> std::convertible_to<Push<Dim>>;
 };
 
-/// The drag of a fluid that flows steadily, linear in the velocity against it. Stokes: a sphere in a
-/// viscous fluid, 6 pi eta r (v - u) and 8 pi eta r^3 omega (Landau & Lifshitz, Fluid Mechanics,
-/// section 20). Besides, or in the plane, every velocity decays at a given rate.
+/// The drag of a fluid that flows steadily, linear in the velocity against it. It is Stokes' of a
+/// sphere in a viscous fluid, 6 pi eta r (v - u) and 8 pi eta r^3 omega (Landau & Lifshitz, Fluid
+/// Mechanics, section 20). Besides, or in the plane, every velocity decays at a given rate.
 template <int Dim>
 struct Drag {
   double viscosity = 0;              ///< eta; of spheres alone [Pa s]

@@ -121,7 +121,8 @@ TEST_SUITE("forces") {
           {.gravity = -10 * up<Dim>(), .time_step = end / steps, .gravity_course = course});
       const Ledger start = energy_ledger(sim);
       sim.step(steps);
-      // g (sin wt, -cos wt): velocity g/w (1 - cos wt, -sin wt), place g/w^2 (wt - sin wt, cos wt - 1).
+      // Gravity is g (sin wt, -cos wt), so velocity is g/w (1 - cos wt, -sin wt), and place
+      // g/w^2 (wt - sin wt, cos wt - 1).
       const double g = 10, phase = rate * end;
       const Vec<Dim> place =
           g / (rate * rate) *
