@@ -82,12 +82,13 @@ std::vector<double> flank_angles(const Columns<2>& x, const Eigen::VectorXd& rad
 
 Silo run_silo(Run<2>& run, const FigureOptions& options) {
   constexpr double kMeans = 0.8, kEvery = 5e-3;  // [s]
-  const MeasuredRegion<2>& region = run.scene().measures.front();
-  const auto slices = static_cast<std::size_t>(region.slices);
-  const double slice = (region.high[1] - region.low[1]) / region.slices;
+  const MeasuredRegion<2>& measure = run.scene().measures.front();
+  const auto slices = static_cast<std::size_t>(measure.slices);
+  const Vec<2> size = measure.region.high - measure.region.low;
+  const double slice = size[1] / measure.slices;
   const std::vector<SeriesColumn> columns = series_columns(run);
   const auto column_of = [&](std::size_t k, const char* what) {
-    const std::string name = region.name + " " + std::to_string(k + 1) + "." + what;
+    const std::string name = measure.name + " " + std::to_string(k + 1) + "." + what;
     return static_cast<std::size_t>(
         std::find_if(columns.begin(), columns.end(),
                      [&](const SeriesColumn& c) { return c.name == name; }) -
@@ -97,7 +98,7 @@ Silo run_silo(Run<2>& run, const FigureOptions& options) {
   Silo silo{.depth = std::vector<double>(slices),
             .vertical = std::vector<double>(slices),
             .horizontal = std::vector<double>(slices),
-            .width = region.high[0] - region.low[0]};
+            .width = size[0]};
   std::vector<double> solid(slices);
   double along = 0, across = 0;
   int samples = 0;

@@ -102,6 +102,7 @@ Scene<2> mixture(int count, double width, double ratio = 10) {
     scene.fills.push_back({.name = "size " + rounded(size),
                            .count = static_cast<int>(share),
                            .radius = size,
+                           .region = {},
                            .arrangement = Arrangement::random});
     all += share;
     sum += share * size;
