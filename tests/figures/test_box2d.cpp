@@ -205,8 +205,7 @@ TEST_SUITE("Box2D") {
     scene.fills = {{.name = "some",
                     .count = 40,
                     .radius = UniformRadius{0.6 * kR, 1.4 * kR},
-                    .low = {0, 0},
-                    .high = {24 * kR, 24 * kR},
+                    .region = {{0, 0}, {24 * kR, 24 * kR}},
                     .velocity = {0.1, -0.2},
                     .random_speed = 0.3}};
     scene.grains = {{.position = {0.3, 0.3}, .radius = kR, .spin = SpinVec<2>(7.0)}};
