@@ -75,7 +75,7 @@ TEST_SUITE("classics") {
     scene.law.friction = 0;
     scene.audit = false;
     scene.fills.front().count = 300;
-    scene.fills.front().high[1] = 0.22;
+    scene.fills.front().region.high[1] = 0.22;
     scene.law.stiffness = 5e5;
     const auto run = make_run(scene, 1);
 
