@@ -3,10 +3,12 @@
 /// @file
 /// Forces on single grains besides their weight: drag, fields, whatever a program thinks of.
 
+#include <lagrain/grains.hpp>
 #include <lagrain/records.hpp>
 #include <lagrain/state.hpp>
 #include <lagrain/vec.hpp>
 
+#include <algorithm>
 #include <concepts>
 #include <cstddef>
 #include <memory>
@@ -34,12 +36,18 @@ struct Push {
 };
 
 /// A body force is a small struct with one function: on(grain, t), at time t [s]. It must depend on
-/// nothing else, so that every order of grains and every number of threads gives the same bits.
+/// nothing else, so that every order of grains and every number of threads gives the same bits. One
+/// that slows grains down may say how fast: slowing(radius, mass) [1/s]; a time step that is too
+/// long for that is refused.
 template <class F, int Dim>
 concept BodyForce = std::copy_constructible<F> &&
     requires(const F& f, const GrainView<Dim>& grain) {
   { f.on(grain, 0.0) } -> std::convertible_to<Push<Dim>>;
 };
+
+/// The part of a velocity that a force may take in a step [-]. At 2, alone, it would turn it round;
+/// contacts need some of the room that is left.
+inline constexpr double kMostTaken = 0.5;
 
 /// The drag of a fluid that flows steadily, linear in the velocity against it. It is Stokes' of a
 /// sphere in a viscous fluid, 6 pi eta r (v - u) and 8 pi eta r^3 omega (Landau & Lifshitz, Fluid
@@ -54,6 +62,13 @@ struct Drag {
   double coefficient(double radius, double mass) const {
     constexpr double kSixPi = 18.849555921538759;
     return rate * mass + kSixPi * viscosity * radius;
+  }
+  /// How fast it slows a grain down, or its spin, whichever is faster [1/s].
+  double slowing(double radius, double mass) const {
+    constexpr double kEightPi = 25.132741228718345;
+    const double of_spin =
+        kEightPi * viscosity * radius * radius * radius / grain_inertia<Dim>(mass, radius);
+    return std::max(coefficient(radius, mass) / mass, of_spin);
   }
   /// See BodyForce.
   Push<Dim> on(const GrainView<Dim>& grain, double) const {

@@ -324,7 +324,7 @@ class GrainSystem {
     }
     update_triangulation(time());
 
-    if (!is_steady(setting_.gravity_course)) moment_ = moment_of_mass();
+    moment_ = moment_of_mass();
     std::vector<bool> is_new(kept.size(), false);
     is_new.resize(index(count()), true);
     changed.grains.resize(index(count()), true);

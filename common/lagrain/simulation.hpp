@@ -107,10 +107,20 @@ class Simulation : public GrainSystem<Dim, Law, N> {
   /// Another force acts on every grain from now on, besides weight and contacts. It is added before
   /// the first step, or between two: there it acts from the next half step on.
   /// @param name  in the list of works
-  /// @throws ContractError if the integrator is for conservative scenes
+  /// @throws ContractError if the integrator is for conservative scenes, or the force slows a grain
+  ///         down too fast for the time step
   template <BodyForce<Dim> F>
   void add_force(std::string name, F force) {
     expect_no_change("body forces may act");
+    if constexpr (requires { force.slowing(1.0, 1.0); }) {
+      for (int i = 0; i < this->count(); ++i) {
+        const double taken =
+            setting_.time_step * force.slowing(this->radii()[i], this->masses()[i]);
+        LAGRAIN_EXPECTS(taken <= kMostTaken, name + " takes " + std::to_string(taken) +
+                                                 " of the velocity of grain " + std::to_string(i) +
+                                                 " in a step");
+      }
+    }
     body_forces_.add(std::move(name), std::move(force), store_, this->time());
     store_.outdate();
   }

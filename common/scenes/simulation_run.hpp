@@ -111,7 +111,7 @@ class SimulationRun final : public Run<Dim> {
   Sim sim_;
 };
 
-/// A drag takes a part of a velocity in a step; more than all of it is none.
+/// A drag must not take more than a part of a velocity in a step.
 /// @param grains  at the start; those of inlets count as well
 /// @throws SceneError that names the step that would do
 template <int Dim>
@@ -119,14 +119,12 @@ void expect_slow_drag(const Scene<Dim>& scene, const std::vector<Grain<Dim>>& gr
   if (!scene.drag) return;
   double fastest = 0;  // [1/s]
   for (const Grain<Dim>& grain : grains) {
-    if (grain.held()) continue;
-    fastest = std::max(fastest, scene.drag->coefficient(grain.radius, grain.mass) / grain.mass);
+    fastest = std::max(fastest, scene.drag->slowing(grain.radius, grain.mass));
   }
-  if (scene.time_step.seconds * fastest <= 1) return;
+  if (scene.time_step.seconds * fastest <= kMostTaken) return;
   throw scene.error("time_step", rounded(scene.time_step.seconds) +
-                                     " s is too large for the drag, which stops a grain in " +
-                                     rounded(1 / fastest) + " s; give a step of at most that, or " +
-                                     "less drag");
+                                     " s is too large for the drag, which allows at most " +
+                                     shortest(kMostTaken / fastest) + " s; or give less drag");
 }
 
 /// The last part of make_run: law and grains as types.

@@ -231,6 +231,37 @@ TEST_SUITE("forces") {
     CHECK(swing(4000) < 0.3 * swing(2000));
   }
 
+  TEST_CASE("a drag that stops spins within a step is refused") {
+    const auto take = [](double viscosity) {
+      auto sim = alone<3>(ball<3>(Vec<3>::Zero()), {.time_step = 0.01});
+      sim.add_force("drag", Drag<3>{.viscosity = viscosity});
+    };
+    // Spins decay at 20 pi eta r / m, faster than velocities.
+    const double most = 0.5 / (0.01 * 20 * std::numbers::pi);
+    take(0.99 * most);
+    CHECK_THROWS_AS(take(1.01 * most), ContractError);
+  }
+
+  TEST_CASE_TEMPLATE("gravity that is switched where grains come and leave at that time", S,
+                     Space<2>, Space<3>) {
+    constexpr int Dim = S::Dim;
+    Material soft = kGravel;
+    soft.stiffness = 1;
+    const LawTable<LinearSpring> laws(make_law<LinearSpring>(soft));
+    const std::vector<Grain<Dim>> two{ball<Dim>(7 * up<Dim>()),
+                                      ball<Dim>(5 * Vec<Dim>::Unit(0) + 3 * up<Dim>())};
+    Simulation<Dim, LinearSpring, VelocityVerlet, AllPairs<Dim>> sim(
+        make_grains<Dim, Needs{}>(two), laws, {}, {.gravity = -10 * up<Dim>(), .time_step = 1e-4},
+        {});
+    const Ledger start = energy_ledger(sim);
+    sim.step(5);
+    sim.set_gravity(4 * Vec<Dim>::Unit(0));
+    sim.exchange({0}, make_grains<Dim, Needs{}>({ball<Dim>(-90 * Vec<Dim>::Unit(0))}));
+    sim.step(5);
+    // dt^2 m a^2 / 8 is all that velocity Verlet leaves.
+    CHECK(std::abs(residual(energy_ledger(sim), start)) < 1e-6);
+  }
+
   TEST_CASE("an integrator of conservative scenes takes neither") {
     const LawTable<LinearSpring> laws(make_law<LinearSpring>({.stiffness = 1e3}));
     Simulation<2, LinearSpring, ForestRuth, AllPairs<2>> sim(
