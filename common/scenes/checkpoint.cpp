@@ -196,7 +196,8 @@ std::string encode_checkpoint(const State& state) {
 
 State decode_checkpoint(std::string_view bytes) {
   if (!bytes.starts_with(kKind)) throw SceneError("it is no checkpoint");
-  const std::string_view head = bytes.substr(0, kHeader), image = bytes.substr(head.size());
+  if (bytes.size() < kHeader) throw SceneError("it was cut off in its first line");
+  const std::string_view head = bytes.substr(0, kHeader), image = bytes.substr(kHeader);
   int version = 0;
   std::from_chars(head.data() + kKind.size() + 1, head.data() + head.size(), version);
   if (version != kVersion) {

@@ -268,6 +268,8 @@ TEST_SUITE("checkpoints") {
       CHECK_THROWS_AS(decode_checkpoint(whole.substr(0, at)), SceneError);
     }
     CHECK_THROWS_AS(decode_checkpoint(whole + '\0'), SceneError);
+    CHECK_THROWS_WITH_AS(decode_checkpoint("lagrain checkpoint"),
+                         "it was cut off in its first line", SceneError);
   }
 
   TEST_CASE("the first line says what the file is, and a later version is refused by its number") {
