@@ -80,7 +80,7 @@ std::vector<double> flank_angles(const Columns<2>& x, const Eigen::VectorXd& rad
   return angles;
 }
 
-Silo run_silo(Run<2>& run, const FigureOptions& options) {
+JanssenSilo run_silo(Run<2>& run, const FigureOptions& options) {
   constexpr double kMeans = 0.8, kEvery = 5e-3;  // [s]
   const MeasuredRegion<2>& measure = run.scene().measures.front();
   const auto slices = static_cast<std::size_t>(measure.slices);
@@ -95,10 +95,10 @@ Silo run_silo(Run<2>& run, const FigureOptions& options) {
         columns.begin());
   };
 
-  Silo silo{.depth = std::vector<double>(slices),
-            .vertical = std::vector<double>(slices),
-            .horizontal = std::vector<double>(slices),
-            .width = size[0]};
+  JanssenSilo silo{.depth = std::vector<double>(slices),
+                   .vertical = std::vector<double>(slices),
+                   .horizontal = std::vector<double>(slices),
+                   .width = size[0]};
   std::vector<double> solid(slices);
   double along = 0, across = 0;
   int samples = 0;

@@ -26,7 +26,7 @@ inline double janssen_stress(double depth, double weight, double length) {
 double janssen_length(std::span<const double> depth, std::span<const double> stress, double weight);
 
 /// A bed in a silo; means over time.
-struct Silo {
+struct JanssenSilo {
   std::vector<double> depth;       ///< of the slices' middles below the surface [m]
   std::vector<double> vertical;    ///< stress [Pa]
   std::vector<double> horizontal;  ///< stress [Pa]
@@ -60,7 +60,7 @@ inline double friction_angle(double larger, double smaller) {
 }
 
 /// Runs janssen.toml from its start on; the means are over its last 0.8 s.
-Silo run_silo(Run<2>& run, const FigureOptions& options);
+JanssenSilo run_silo(Run<2>& run, const FigureOptions& options);
 /// Runs a scene with walls "side" and "top" on the right and above; means over 20 ms.
 Biaxial run_biaxial(Run<2>& run, const FigureOptions& options);
 

@@ -55,7 +55,7 @@ Spread spread_of(const std::vector<double>& values) {
 }
 
 struct SiloSeries {
-  Silo mean;                    ///< over the seeds
+  JanssenSilo mean;             ///< over the seeds
   std::vector<double> lengths;  ///< fitted, of each seed [m]
   double friction = 0;          ///< of the walls as the scene has it
   Snapshot last;
@@ -106,12 +106,12 @@ void run_silos(Figure21& figure, const FigureOptions& options) {
   Scene<2> scene = read_scene<2>(options.scenes / "janssen.toml");
   if (options.quick) fill_less(scene, 2);
   figure.silo.friction = scene.law.friction;
-  Silo& mean = figure.silo.mean;
+  JanssenSilo& mean = figure.silo.mean;
   for (int seed = 1; seed <= seeds; ++seed) {
     options.progress(0.3 * (seed - 1) / seeds, "Janssen's silo");
     scene.seed = static_cast<std::uint64_t>(seed);
     const auto run = make_run(scene, 1);
-    const Silo silo = run_silo(*run, options);
+    const JanssenSilo silo = run_silo(*run, options);
     figure.silo.lengths.push_back(janssen_length(silo.depth, silo.vertical, silo.weight));
     figure.count(*run);
     if (seed == 1) {
@@ -234,7 +234,7 @@ Series line_of(const std::string& name, std::vector<double> dashes = {}) {
 }
 
 Plot silo_plot(const SiloSeries& series) {
-  const Silo& silo = series.mean;
+  const JanssenSilo& silo = series.mean;
   Series found = curve(0, "measured"), fit = line_of("Janssen, fitted"),
          told = line_of("Janssen, from the walls", {3, 2}), free = line_of("without walls", {1, 2});
   found.width = 0;
@@ -382,7 +382,7 @@ void write_numbers(const Figure21& figure, const FigureOptions& options, FigureR
     result.downloads.push_back(file);
   };
   Csv silo("depth[m],vertical_stress[Pa],horizontal_stress[Pa]");
-  const Silo& mean = figure.silo.mean;
+  const JanssenSilo& mean = figure.silo.mean;
   for (std::size_t k = 0; k < mean.depth.size(); ++k) {
     silo.row(mean.depth[k], mean.vertical[k], mean.horizontal[k]);
   }
@@ -432,7 +432,7 @@ Table table_of(const std::vector<Compression>& all) {
 }
 
 std::string caption_of(const Figure21& figure) {
-  const Silo& silo = figure.silo.mean;
+  const JanssenSilo& silo = figure.silo.mean;
   const Spread lengths = spread_of(figure.silo.lengths);
   const Strength strength = strength_of(figure.compressions.back().test);
   const Biaxial& test = figure.compressions.back().test;

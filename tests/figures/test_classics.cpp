@@ -79,7 +79,7 @@ TEST_SUITE("classics") {
     scene.law.stiffness = 5e5;
     const auto run = make_run(scene, 1);
 
-    const Silo silo = run_silo(*run, FigureOptions());
+    const JanssenSilo silo = run_silo(*run, FigureOptions());
 
     CHECK(silo.wall_friction == 0);
     CHECK(relative_error(silo.width, 0.15) < 1e-15);
