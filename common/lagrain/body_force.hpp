@@ -100,7 +100,7 @@ class BodyForces {
 
   /// Keeps or restores what they have done.
   /// @throws SceneError if the state is that of other forces
-  void persist(StateVisitor visit) {
+  void persist(const StateVisitor& visit) {
     for (Work& work : works_) {
       visit.in(work.name)("power", work.power);
       visit.in(work.name)("work", work.work);

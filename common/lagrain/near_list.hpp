@@ -239,7 +239,7 @@ class NearList {
   /// @param size        number of grains from now on
   /// @param block_size  of slots from now on
   /// @throws SceneError if the state holds no such memories
-  void persist(StateVisitor visit, int size, int block_size) {
+  void persist(const StateVisitor& visit, int size, int block_size) {
     if constexpr (Memory::kReals > 0) {
       auto [pairs, wall_pairs] = memories();
       persist_memories(visit.in("contacts"), pairs,

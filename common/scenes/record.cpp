@@ -103,7 +103,7 @@ class Recorder {
   }
 
   /// Keeps where the run and its folder are; or goes on with the folder, where the run is already.
-  void persist(StateVisitor visit) {
+  void persist(const StateVisitor& visit) {
     if (!visit.restores()) {
       run_.persist(visit.in("run"));
       scene_text_ = to_toml(scene_with_copies());

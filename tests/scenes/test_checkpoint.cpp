@@ -176,7 +176,7 @@ void check_same_series(const fs::path& a, const fs::path& b) {
   const auto one = cells_of(a), other = cells_of(b);
   REQUIRE(one.size() == other.size());
   REQUIRE(one.size() > 10);
-  const std::vector<std::string> head = one.front();
+  const std::vector<std::string>& head = one.front();
   for (std::size_t row = 0; row < one.size(); ++row) {
     REQUIRE(one[row].size() == other[row].size());
     for (std::size_t k = 0; k < one[row].size(); ++k) {
