@@ -189,7 +189,7 @@ typename Wall<Dim>::Foot foot_on_surface(const Wall<Dim>* walls, std::span<const
   const auto consider = [&](std::size_t k) {
     const Wall<Dim>& wall = walls[pairs[k].wall];
     if (!wall.joined || wall.lets_through(own_pair.i)) return;
-    const auto foot = walls[pairs[k].wall].foot(pairs[k].piece, x);
+    const auto foot = wall.foot(pairs[k].piece, x);
     if (foot.distance <= own.distance + 2 * seam) add(pairs[k], foot);
   };
   for (std::size_t k = own_place; k > 0 && pairs[k - 1].i == own_pair.i; --k) consider(k - 1);

@@ -3,6 +3,7 @@
 
 #include "measure.hpp"
 #include "packing.hpp"
+#include "walls_by_name.hpp"
 
 #include <lagrain/check.hpp>
 
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -20,14 +22,6 @@ namespace {
 constexpr double kSiloRadius = 0.1;  // of the published cylinder [m]
 constexpr double kFallBelow = 0.04;  // what is so far below the lip has left [m]
 constexpr double kBedMargin = 0.02;  // of a bed's surface, in which its density is not measured [m]
-
-/// The wall of a scene that has this name.
-auto& wall_of(auto& scene, const std::string& name) {
-  const auto at = std::find_if(scene.walls.begin(), scene.walls.end(),
-                               [&](const Wall<3>& wall) { return wall.name == name; });
-  LAGRAIN_EXPECTS(at != scene.walls.end(), "no wall \"" + name + "\"");
-  return *at;
-}
 
 /// Which of a scene's materials has a name.
 int material_of(const Scene<3>& scene, const std::string& name) {
@@ -69,22 +63,6 @@ RunReport run_sampled(const Scene<3>& scene, double every, const Watch& watch, S
   return report;
 }
 
-/// Slope of the straight line through y against x, by least squares.
-double slope_of(const std::vector<double>& x, const std::vector<double>& y, std::size_t first,
-                std::size_t last) {
-  double mean_x = 0, mean_y = 0, xx = 0, xy = 0;
-  const auto n = static_cast<double>(last - first);
-  for (std::size_t k = first; k < last; ++k) {
-    mean_x += x[k] / n;
-    mean_y += y[k] / n;
-  }
-  for (std::size_t k = first; k < last; ++k) {
-    xx += (x[k] - mean_x) * (x[k] - mean_x);
-    xy += (x[k] - mean_x) * (y[k] - mean_y);
-  }
-  return xy / xx;
-}
-
 /// The mean of the slopes of equal parts of a curve, and its standard error by their scatter.
 std::pair<double, double> rate_of(const std::vector<double>& time, const std::vector<double>& left,
                                   std::size_t first) {
@@ -94,7 +72,8 @@ std::pair<double, double> rate_of(const std::vector<double>& time, const std::ve
   double sum = 0, squares = 0;
   for (std::size_t part = 0; part < kParts; ++part) {
     const std::size_t from = first + part * length;
-    const double slope = slope_of(time, left, from, from + length);
+    const double slope = bench::slope_of(std::span(time).subspan(from, length),
+                                         std::span(left).subspan(from, length));
     sum -= slope;
     squares += slope * slope;
   }
@@ -136,7 +115,7 @@ Scene<3> with_orifice(Scene<3> scene, double orifice) {
   const double radius = orifice / 2, depth = kSiloRadius - radius;
   const Vec<3> up = Vec<3>::UnitZ(), lip = -depth * up;
   const auto put = [&](const std::string& name, const Frustum& frustum) {
-    Wall<3>& wall = wall_of(scene, name);
+    Wall<3>& wall = wall_named(scene.walls, name);
     Wall<3> other = Wall<3>::sheet(name, lip, {frustum});
     other.material = wall.material;
     other.until = wall.until;
@@ -148,12 +127,12 @@ Scene<3> with_orifice(Scene<3> scene, double orifice) {
   return scene;
 }
 
-double gate_of(const Scene<3>& scene) { return wall_of(scene, "gate").until; }
+double gate_of(const Scene<3>& scene) { return wall_named(scene.walls, "gate").until; }
 
 Silo run_silo(const Scene<3>& scene, const Watch& watch) {
   constexpr double kEvery = 0.005;
   Silo silo;
-  const Wall<3>& funnel = wall_of(scene, "funnel");
+  const Wall<3>& funnel = wall_named(scene.walls, "funnel");
   const double opened = gate_of(scene), lip = funnel.point.z();
   silo.orifice = 2 * std::get<Frustum>(funnel.pieces()->piece(0)).low_radius;
   silo.report = run_sampled(scene, kEvery, watch, [&](const Run<3>& run) {
@@ -195,7 +174,7 @@ Beverloo fit_beverloo(const std::vector<double>& orifice_over_grain,
   const auto n = static_cast<double>(x.size());
   std::vector<double> y;
   for (const double w : flow) y.push_back(std::pow(w, 0.4));
-  const double slope = slope_of(x, y, 0, x.size());
+  const double slope = bench::slope_of(x, y);
   double mean_x = 0, mean_y = 0, xx = 0, rest = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     mean_x += x[i] / n;
@@ -220,7 +199,7 @@ Beverloo fit_beverloo(const std::vector<double>& orifice_over_grain,
 Drum run_drum(const Scene<3>& scene, const Watch& watch) {
   constexpr double kEvery = 0.02;
   Drum drum;
-  const auto turn = std::get<Turn<3>>(wall_of(scene, "drum").turning);
+  const auto turn = std::get<Turn<3>>(wall_named(scene.walls, "drum").turning);
   const std::array<int, 2> materials{material_of(scene, "M1"), material_of(scene, "M2")};
   const double gravity = scene.gravity.norm();
   struct Sample {

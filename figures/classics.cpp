@@ -1,36 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "classics.hpp"
 
+#include "measure.hpp"
+#include "walls_by_name.hpp"
+
 #include <lagrain/frame.hpp>
+#include <lagrain/golden_section.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <map>
 #include <string>
 
 namespace lagrain::figures {
-
-namespace {
-
-const Wall<2>& wall_named(const Run<2>& run, const std::string& name) {
-  return *std::find_if(run.walls().begin(), run.walls().end(),
-                       [&](const Wall<2>& wall) { return wall.name == name; });
-}
-
-/// The straight line through points: its slope.
-double slope_of(const std::vector<Vec<2>>& points) {
-  Vec<2> mean = Vec<2>::Zero();
-  for (const Vec<2>& p : points) mean += p / static_cast<double>(points.size());
-  double xx = 0, xy = 0;
-  for (const Vec<2>& p : points) {
-    xx += (p[0] - mean[0]) * (p[0] - mean[0]);
-    xy += (p[0] - mean[0]) * (p[1] - mean[1]);
-  }
-  return xy / xx;
-}
-
-}  // namespace
 
 double janssen_length(std::span<const double> depth, std::span<const double> stress,
                       double weight) {
@@ -42,18 +26,11 @@ double janssen_length(std::span<const double> depth, std::span<const double> str
     }
     return sum;
   };
-  // The misfit has one minimum: golden sections of the logarithm close in on it.
-  const double deepest = *std::max_element(depth.begin(), depth.end());
-  double low = std::log(1e-3 * deepest), high = std::log(1e3 * deepest);
-  constexpr double kGolden = 0.6180339887498949;
-  while (high - low > 1e-9) {
-    const double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
-    if (misfit(std::exp(a)) < misfit(std::exp(b)))
-      high = b;
-    else
-      low = a;
-  }
-  return std::exp(0.5 * (low + high));
+  // It has one minimum, which is looked for in the logarithm of the length.
+  const double deepest = std::log(*std::max_element(depth.begin(), depth.end()));
+  const double thousand = std::log(1e3);
+  return std::exp(least_between(deepest - thousand, deepest + thousand,
+                                [&](double log_length) { return misfit(std::exp(log_length)); }));
 }
 
 std::vector<double> flank_angles(const Columns<2>& x, const Eigen::VectorXd& radius) {
@@ -68,14 +45,16 @@ std::vector<double> flank_angles(const Columns<2>& x, const Eigen::VectorXd& rad
     return a.second[1] < b.second[1];
   });
   const Vec<2> summit = peak->second;
-  std::vector<Vec<2>> flanks[2];
+  std::array<std::array<std::vector<double>, 2>, 2> flanks;  // left, right: places, heights
   for (const auto& [column, top] : tops) {
     if (top[1] < 0.2 * summit[1] || top[1] > 0.8 * summit[1]) continue;
-    flanks[top[0] < summit[0] ? 0 : 1].push_back(top);
+    auto& flank = flanks[top[0] < summit[0] ? 0 : 1];
+    for (std::size_t d = 0; d < 2; ++d) flank[d].push_back(top[static_cast<Eigen::Index>(d)]);
   }
   std::vector<double> angles;
   for (const auto& flank : flanks) {
-    if (flank.size() >= 3) angles.push_back(std::abs(std::atan(slope_of(flank))));
+    if (flank[0].size() < 3) continue;
+    angles.push_back(std::abs(std::atan(bench::slope_of(flank[0], flank[1]))));
   }
   return angles;
 }
@@ -114,7 +93,7 @@ JanssenSilo run_silo(Run<2>& run, const FigureOptions& options) {
       silo.horizontal[k] += std::get<double>(row[column_of(k, "sxx")]);
     }
     for (const char* side : {"left", "right"}) {
-      const Vec<2>& force = wall_named(run, side).force;
+      const Vec<2>& force = wall_named(run.walls(), side).force;
       across += std::abs(force[0]);
       along -= force[1];
     }
@@ -152,18 +131,18 @@ JanssenSilo run_silo(Run<2>& run, const FigureOptions& options) {
 Biaxial run_biaxial(Run<2>& run, const FigureOptions& options) {
   constexpr double kMeans = 20e-3;  // [s]
   constexpr int kSamples = 20;
-  const double height = wall_named(run, "top").point[1];
-  const double start = std::get<Steady<2>>(wall_named(run, "top").motion).start;
+  const double height = wall_named(run.walls(), "top").point[1];
+  const double start = std::get<Steady<2>>(wall_named(run.walls(), "top").motion).start;
   run.advance_to(start);
   Biaxial test;
-  const double rested = wall_named(run, "side").point[0];
+  const double rested = wall_named(run.walls(), "side").point[0];
   for (double t = start; t + kMeans < run.scene().duration;) {
     options.check_stop();
     double axial = 0, lateral = 0, wide = 0, high = 0;
     for (int k = 0; k < kSamples; ++k) {
       t += kMeans / kSamples;
       run.advance_to(t);
-      const Wall<2>&side = wall_named(run, "side"), &top = wall_named(run, "top");
+      const Wall<2>&side = wall_named(run.walls(), "side"), &top = wall_named(run.walls(), "top");
       wide += side.point[0] / kSamples;
       high += top.point[1] / kSamples;
       axial += top.force[1] / side.point[0] / kSamples;

@@ -7,6 +7,7 @@
 
 #include <lagrain/plot.hpp>
 
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ struct Diagram {
   std::string title;
   Plot plot;
 };
+
+/// An angle [rad] as diagrams have it.
+inline double degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
 /// Colour, dashes and marker of the index-th curve of a diagram.
 Series curve(int index, const std::string& name);

@@ -436,7 +436,7 @@ Table table_of(const std::vector<Row>& rows) {
   for (const Row& row : rows) {
     for (const Trial& t : row.trials) {
       const Tally& n = t.tally;
-      const auto share = [&](int part) { return rounded(hundredths(part, n.queries)) + " %"; };
+      const auto share = [&](int part) { return percent(hundredths(part, n.queries) / 100, 3); };
       table.rows.push_back({(row.dim == 2 ? "plane: " : "space: ") + row.sites, t.predicate,
                             share(n.wrong), share(n.opposite), share(n.ties), share(n.undecided),
                             two_digits(t.times[kPlain]), two_digits(t.times[kFiltered]),

@@ -75,8 +75,6 @@ constexpr double kForce1 = 7108, kForce2 = 7233;
 constexpr double kUsualSteps = 25;  // to a contact, as scenes have them that name none
 constexpr double kManySteps = 100;
 
-double degrees(double radians) { return radians * 180 / std::numbers::pi; }
-
 double angle_of(const Impact& i) { return degrees(std::atan2(i.before.slip, i.before.approach)); }
 double tangential_restitution(const Impact& i) { return i.after.across / i.before.across; }
 double scaled_incidence(const Impact& i) {

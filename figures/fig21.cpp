@@ -29,8 +29,6 @@ namespace lagrain::figures {
 
 namespace {
 
-double degrees(double radians) { return radians * 180 / std::numbers::pi; }
-
 /// A state to be drawn.
 struct Snapshot {
   Columns<2> position;

@@ -83,17 +83,19 @@ std::string clock_text(double seconds) {
 /// What running and resuming have in common.
 struct RecordArguments {
   int threads = 0;
-  std::string checkpoint_every = rounded(RecordOptions{}.checkpoint_every) + " s";
+  double checkpoint_every = RecordOptions{}.checkpoint_every;  // [s]
 };
 
 /// The time [s] that a flag gives.
+/// @throws CLI::ValidationError if it is none
 double seconds_of(const std::string& flag, const std::string& text) {
   try {
     const Quantity time = parse_quantity(text);
     if (time.unit == Unit{.second = 1} && time.value >= 0) return time.value;
   } catch (const std::invalid_argument&) {  // said below
   }
-  throw SceneError(flag + ": expected a time such as \"90 s\" or \"2 min\", got \"" + text + "\"");
+  throw CLI::ValidationError(flag,
+                             "expected a time such as \"90 s\" or \"2 min\", got \"" + text + "\"");
 }
 
 /// Records a run, with progress on a terminal, and says how it ended.
@@ -104,7 +106,7 @@ int record_with_progress(const Run<Dim>& run, const fs::path& folder,
   RecordOptions options;
   options.folder = folder;
   options.stop = stopping;
-  options.checkpoint_every = seconds_of(kCheckpointEvery, arguments.checkpoint_every);
+  options.checkpoint_every = arguments.checkpoint_every;
   ProgressLine line;
   if (line.terminal()) {
     options.progress = [&](const Progress& p) {
@@ -151,14 +153,12 @@ int run_command(const RunArguments& arguments) {
 
 struct ResumeArguments : RecordArguments {
   std::string folder;
-  std::string until;
+  std::optional<double> until;  // [s]
 };
 
 template <int Dim>
 int resume_scene(const ResumeArguments& arguments, const Checkpoint& checkpoint) {
-  std::optional<double> until;
-  if (!arguments.until.empty()) until = seconds_of(kUntil, arguments.until);
-  const auto run = resume_run<Dim>(checkpoint, until, arguments.threads);
+  const auto run = resume_run<Dim>(checkpoint, arguments.until, arguments.threads);
   if (run->finished()) {
     std::cout << arguments.folder << " is at its end, t = " << rounded(run->time(), 4)
               << " s; to go further: --until\n";
@@ -253,9 +253,13 @@ void add_record_options(CLI::App& app, RecordArguments& arguments) {
   app.add_option("--threads", arguments.threads,
                  "threads that share a step (default: as many as pay)")
       ->check(CLI::Range(1, 1024));
-  app.add_option(kCheckpointEvery, arguments.checkpoint_every,
-                 "wall-clock time between checkpoints, from which a run can be resumed")
-      ->capture_default_str();
+  app.add_option_function<std::string>(
+         kCheckpointEvery,
+         [&](const std::string& text) {
+           arguments.checkpoint_every = seconds_of(kCheckpointEvery, text);
+         },
+         "wall-clock time between checkpoints, from which a run can be resumed")
+      ->default_str(rounded(arguments.checkpoint_every) + " s");
 }
 
 int complain(const std::string& sentence, int code) {
@@ -281,7 +285,9 @@ int main(int argc, char** argv) {
   ResumeArguments resume;
   CLI::App* resume_app = app.add_subcommand("resume", "Go on with a run from its last checkpoint");
   resume_app->add_option("folder", resume.folder, "folder of the run")->required();
-  resume_app->add_option(kUntil, resume.until, "new end, \"2.5 s\" (default: the scene's)");
+  resume_app->add_option_function<std::string>(
+      kUntil, [&](const std::string& text) { resume.until = seconds_of(kUntil, text); },
+      "new end, \"2.5 s\" (default: the scene's)");
   add_record_options(*resume_app, resume);
 
   FigureArguments figure;

@@ -41,19 +41,28 @@ double seconds_per_call(const std::function<void()>& call, double least) {
   return median_of(rounds);
 }
 
+double slope_of(std::span<const double> x, std::span<const double> y) {
+  const auto n = static_cast<double>(x.size());
+  double mean_x = 0, mean_y = 0, xx = 0, xy = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    mean_x += x[k] / n;
+    mean_y += y[k] / n;
+  }
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    xx += (x[k] - mean_x) * (x[k] - mean_x);
+    xy += (x[k] - mean_x) * (y[k] - mean_y);
+  }
+  return x.size() < 2 ? std::numeric_limits<double>::quiet_NaN() : xy / xx;
+}
+
 double observed_order(std::span<const double> x, std::span<const double> y) {
-  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  std::vector<double> log_x, log_y;
   for (std::size_t k = 0; k < x.size(); ++k) {
     if (!(x[k] > 0 && y[k] > 0)) continue;
-    const double lx = std::log(x[k]), ly = std::log(y[k]);
-    n += 1;
-    sx += lx;
-    sy += ly;
-    sxx += lx * lx;
-    sxy += lx * ly;
+    log_x.push_back(std::log(x[k]));
+    log_y.push_back(std::log(y[k]));
   }
-  return n < 2 ? std::numeric_limits<double>::quiet_NaN()
-               : (n * sxy - sx * sy) / (n * sxx - sx * sx);
+  return slope_of(log_x, log_y);
 }
 
 }  // namespace lagrain::bench

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// What diagrams of speed against error share: processor time and observed orders.
+/// What diagrams share: processor time, straight lines through points, observed orders.
 
 #include <functional>
 #include <span>
@@ -19,6 +19,9 @@ double median_of(std::vector<double> values);
 /// Processor time of one call [s]: the median of three rounds, each of as many calls as fill
 /// `least` seconds.
 double seconds_per_call(const std::function<void()>& call, double least = 0.02);
+
+/// Slope of the straight line through (x, y), by least squares; NaN with fewer than two points.
+double slope_of(std::span<const double> x, std::span<const double> y);
 
 /// Slope of the straight line through (log x, log y), by least squares: the order at which an error
 /// y falls with a step x. Points that are not positive are left out; NaN with fewer than two.

@@ -12,6 +12,7 @@
 #include <concepts>
 #include <cstddef>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -60,22 +61,21 @@ struct Drag {
 
   /// Force over velocity, with the opposite sign [kg/s].
   double coefficient(double radius, double mass) const {
-    constexpr double kSixPi = 18.849555921538759;
-    return rate * mass + kSixPi * viscosity * radius;
+    return rate * mass + 6 * std::numbers::pi * viscosity * radius;
+  }
+  /// Torque over spin, with the opposite sign [kg m^2/s].
+  double spin_coefficient(double radius) const {
+    return 8 * std::numbers::pi * viscosity * radius * radius * radius;
   }
   /// How fast it slows a grain down, or its spin, whichever is faster [1/s].
   double slowing(double radius, double mass) const {
-    constexpr double kEightPi = 25.132741228718345;
-    const double of_spin =
-        kEightPi * viscosity * radius * radius * radius / grain_inertia<Dim>(mass, radius);
-    return std::max(coefficient(radius, mass) / mass, of_spin);
+    return std::max(coefficient(radius, mass) / mass,
+                    spin_coefficient(radius) / grain_inertia<Dim>(mass, radius));
   }
   /// See BodyForce.
   Push<Dim> on(const GrainView<Dim>& grain, double) const {
-    constexpr double kEightPi = 25.132741228718345;
-    const double r = grain.radius;
-    return {-coefficient(r, grain.mass) * (grain.velocity - flow),
-            -kEightPi * viscosity * r * r * r * grain.spin};
+    return {-coefficient(grain.radius, grain.mass) * (grain.velocity - flow),
+            -spin_coefficient(grain.radius) * grain.spin};
   }
 };
 static_assert(BodyForce<Drag<2>, 2> && BodyForce<Drag<3>, 3>);
@@ -101,9 +101,10 @@ class BodyForces {
   /// Keeps or restores what they have done.
   /// @throws SceneError if the state is that of other forces
   void persist(const StateVisitor& visit) {
-    for (Work& work : works_) {
-      visit.in(work.name)("power", work.power);
-      visit.in(work.name)("work", work.work);
+    for (std::size_t k = 0; k < works_.size(); ++k) {
+      StateVisitor force = visit.in(std::to_string(k));
+      force("power", works_[k].power);
+      force("work", works_[k].work);
     }
   }
 

@@ -156,9 +156,10 @@ class GrainStore {
   /// Keeps or restores the grains, each in a row, in the order of the slots.
   /// @throws SceneError if the state holds no such grains
   void persist(StateVisitor visit) {
-    Grains<Dim, needs> g = visit.restores() ? Grains<Dim, needs>{} : in_slots();
     std::vector<int> number(records_.size());
     for (int slot = 0; slot < count(); ++slot) number[index(slot)] = this->number(slot);
+    Grains<Dim, needs> g;
+    if (!visit.restores()) g = joined(by_number(), number, make_grains<Dim, needs>({}));
     visit("number", number);
     visit("ids", ids_);
     visit("next_id", next_id_);
@@ -232,13 +233,6 @@ class GrainStore {
       }
       if (!materials_.empty()) materials_[index(slot)] = g.material[index(i)];
     }
-  }
-
-  /// The grains as they are now, by slot.
-  Grains<Dim, needs> in_slots() const {
-    std::vector<int> all(records_.size());
-    for (int slot = 0; slot < count(); ++slot) all[index(slot)] = number(slot);
-    return joined(by_number(), all, make_grains<Dim, needs>({}));
   }
 
   /// @param g        grains by slot

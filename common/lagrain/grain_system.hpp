@@ -121,6 +121,7 @@ class GrainSystem {
       walls_[w].persist(visit.in("walls").in(std::to_string(w)));
     }
     visit("gravity", setting_.gravity);
+    visit("first_gravity", first_gravity_);
     body_forces_.persist(visit.in("forces"));
     driven_load_.persist(visit.in("driven"));
     store_.persist(visit.in("grains"));

@@ -15,6 +15,7 @@
 #include <lagrain/check.hpp>
 #include <lagrain/contact_rules.hpp>
 #include <lagrain/contact_search.hpp>
+#include <lagrain/golden_section.hpp>
 #include <lagrain/vec.hpp>
 #include <lagrain/walls.hpp>
 
@@ -42,20 +43,9 @@ inline constexpr double kMissed = 4 * kSlow * kSlow / 14;
 /// @param radius    the smaller one [m]
 template <class Distance>
 double missed_overlap(Distance&& distance, double reach, double radius) {
-  // Golden sections: the least value of a convex function, and an end of a concave one.
-  constexpr double kGolden = 0.6180339887498949;
-  constexpr int kSections = 60;  // the rest is below rounding
-  double low = 0, high = 1;
-  for (int k = 0; k < kSections; ++k) {
-    const double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
-    if (distance(a) < distance(b)) {
-      high = b;
-    } else {
-      low = a;
-    }
-  }
+  const double nearest = least_between(0, 1, distance);  // an end, if it is concave
   const double seen = std::max(0.0, reach - std::min(distance(0.0), distance(1.0)));
-  const double missed = reach - distance(0.5 * (low + high)) - seen;
+  const double missed = reach - distance(nearest) - seen;
   return missed > kMissed * radius ? missed : 0;
 }
 

@@ -58,34 +58,34 @@ struct Slice {
 
 /// Which slice of a region a coordinate along its axis lies in; too small or large if in none.
 template <int Dim>
-double slice_at(const MeasuredRegion<Dim>& region, double coordinate) {
-  return (coordinate - region.region.low[region.axis]) /
-         (region.region.high[region.axis] - region.region.low[region.axis]) * region.slices;
+double slice_at(const MeasuredRegion<Dim>& measure, double coordinate) {
+  return (coordinate - measure.region.low[measure.axis]) /
+         (measure.region.high[measure.axis] - measure.region.low[measure.axis]) * measure.slices;
 }
 
 template <int Dim>
-bool holds(const MeasuredRegion<Dim>& region, const Vec<Dim>& x) {
-  return (x.array() >= region.region.low.array()).all() &&
-         (x.array() < region.region.high.array()).all();
+bool holds(const MeasuredRegion<Dim>& measure, const Vec<Dim>& x) {
+  return (x.array() >= measure.region.low.array()).all() &&
+         (x.array() < measure.region.high.array()).all();
 }
 
 template <int Dim>
-void add_grains(const Run<Dim>& run, const MeasuredRegion<Dim>& region,
+void add_grains(const Run<Dim>& run, const MeasuredRegion<Dim>& measure,
                 std::vector<Slice<Dim>>& slices) {
   const double thickness =
-      (region.region.high[region.axis] - region.region.low[region.axis]) / region.slices;
+      (measure.region.high[measure.axis] - measure.region.low[measure.axis]) / measure.slices;
   for (int i = 0; i < run.count(); ++i) {
     const Vec<Dim> x = run.positions().col(i);
     const double r = run.radii()[i];
-    const double last = region.slices - 1;
-    const double from = std::floor(slice_at(region, x[region.axis] - r));
-    const double to = std::floor(slice_at(region, x[region.axis] + r));
+    const double last = measure.slices - 1;
+    const double from = std::floor(slice_at(measure, x[measure.axis] - r));
+    const double to = std::floor(slice_at(measure, x[measure.axis] + r));
     if (!(to >= 0 && from <= last)) continue;
     for (int k = static_cast<int>(std::max(from, 0.0)); k <= std::min(to, last); ++k) {
-      Vec<Dim> low = region.region.low;
-      Vec<Dim> high = region.region.high;
-      low[region.axis] += k * thickness;
-      high[region.axis] = low[region.axis] + thickness;
+      Vec<Dim> low = measure.region.low;
+      Vec<Dim> high = measure.region.high;
+      low[measure.axis] += k * thickness;
+      high[measure.axis] = low[measure.axis] + thickness;
       slices[static_cast<std::size_t>(k)].solid += part_within(x, r, low, high, run.scene().depth);
     }
   }
@@ -93,16 +93,16 @@ void add_grains(const Run<Dim>& run, const MeasuredRegion<Dim>& region,
 
 template <int Dim>
 void add_contact(const Run<Dim>& run, const ContactRecord<Dim>& contact,
-                 const MeasuredRegion<Dim>& region, std::vector<Slice<Dim>>& slices) {
+                 const MeasuredRegion<Dim>& measure, std::vector<Slice<Dim>>& slices) {
   const double r = run.radii()[contact.i];
   const bool on_wall = contact.wall >= 0;
   // On a wall's surface, or in the middle of the overlap.
   const double to_point = r - (on_wall ? contact.overlap : contact.overlap / 2);
   const Vec<Dim> point = run.positions().col(contact.i) - to_point * contact.normal;
-  if (!holds(region, point)) return;
+  if (!holds(measure, point)) return;
   const double branch = on_wall ? to_point : r + run.radii()[contact.j] - contact.overlap;
-  const double k = std::clamp(std::floor(slice_at(region, point[region.axis])), 0.0,
-                              static_cast<double>(region.slices - 1));
+  const double k = std::clamp(std::floor(slice_at(measure, point[measure.axis])), 0.0,
+                              static_cast<double>(measure.slices - 1));
   slices[static_cast<std::size_t>(k)].moment +=
       contact.force * (branch * contact.normal).transpose();
 }
@@ -139,10 +139,10 @@ double volume_within(const Vec<3>& centre, double radius, const Vec<3>& low, con
 
 template <int Dim>
 void add_measure_columns(const Scene<Dim>& scene, std::vector<SeriesColumn>& columns) {
-  for (const MeasuredRegion<Dim>& region : scene.measures) {
-    for (int k = 0; k < region.slices; ++k) {
+  for (const MeasuredRegion<Dim>& measure : scene.measures) {
+    for (int k = 0; k < measure.slices; ++k) {
       const std::string stem =
-          region.name + (region.slices > 1 ? " " + std::to_string(k + 1) : std::string()) + ".";
+          measure.name + (measure.slices > 1 ? " " + std::to_string(k + 1) : std::string()) + ".";
       columns.push_back({stem + "solid", "-"});
       for (const auto [a, b] : kParts<Dim>) {
         columns.push_back({stem + "s" + "xyz"[a] + "xyz"[b], "Pa"});
@@ -160,12 +160,12 @@ void add_measures(const Run<Dim>& run, Sample& row) {
   const Scene<Dim>& scene = run.scene();
   std::vector<ContactRecord<Dim>> contacts;
   if (!scene.measures.empty()) contacts = run.contacts();
-  for (const MeasuredRegion<Dim>& region : scene.measures) {
-    std::vector<Slice<Dim>> slices(static_cast<std::size_t>(region.slices));
-    add_grains(run, region, slices);
-    for (const auto& contact : contacts) add_contact(run, contact, region, slices);
-    const double volume = (region.region.high - region.region.low).prod() *
-                          (Dim == 2 ? scene.depth : 1) / region.slices;
+  for (const MeasuredRegion<Dim>& measure : scene.measures) {
+    std::vector<Slice<Dim>> slices(static_cast<std::size_t>(measure.slices));
+    add_grains(run, measure, slices);
+    for (const auto& contact : contacts) add_contact(run, contact, measure, slices);
+    const double volume = (measure.region.high - measure.region.low).prod() *
+                          (Dim == 2 ? scene.depth : 1) / measure.slices;
     for (const Slice<Dim>& slice : slices) {
       row.emplace_back(slice.solid / volume);
       for (const auto [a, b] : kParts<Dim>) {

@@ -262,6 +262,38 @@ TEST_SUITE("forces") {
     CHECK(std::abs(residual(energy_ledger(sim), start)) < 1e-6);
   }
 
+  TEST_CASE_TEMPLATE("what a state keeps: gravity that was set, and forces of one name", S,
+                     Space<2>, Space<3>) {
+    constexpr int Dim = S::Dim;
+    const auto make = [] {
+      auto sim = alone<Dim>(ball<Dim>(3 * up<Dim>(), Vec<Dim>::Unit(0)),
+                            {.gravity = -10 * up<Dim>(), .time_step = 0.01});
+      sim.add_force("pull", Tether<Dim>{4});
+      sim.add_force("pull", Tether<Dim>{1});
+      return sim;
+    };
+    auto sim = make();
+    sim.step(20);
+    sim.set_gravity(4 * Vec<Dim>::Unit(0));
+    const auto check_going_on = [&] {
+      State state;
+      sim.persist(StateVisitor::keeping(state));
+      auto whole = sim, again = make();
+      again.persist(StateVisitor::restoring(state));
+      whole.step(30);
+      again.step(30);
+      CHECK(whole.grains().position == again.grains().position);
+      CHECK(whole.setting().gravity == again.setting().gravity);
+      CHECK(whole.flow().gravity_work == again.flow().gravity_work);
+      for (std::size_t k = 0; k < 2; ++k) {
+        CHECK(whole.body_forces()[k].work == again.body_forces()[k].work);
+      }
+    };
+    check_going_on();  // before the first step with the new gravity
+    sim.step(5);
+    check_going_on();
+  }
+
   TEST_CASE("an integrator of conservative scenes takes neither") {
     const LawTable<LinearSpring> laws(make_law<LinearSpring>({.stiffness = 1e3}));
     Simulation<2, LinearSpring, ForestRuth, AllPairs<2>> sim(

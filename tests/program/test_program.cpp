@@ -308,6 +308,10 @@ TEST_SUITE("program") {
     CHECK(place.out().starts_with("parted is at its end, t = 0.06"));
     CHECK(place.run({"resume", "parted", "--until", "70 ms"}) == 0);
     CHECK(place.run({"resume", "parted", "--until", "70 kg"}) == 2);
+    CHECK(holds(place.err(),
+                "--until: expected a time such as \"90 s\" or \"2 min\", got \"70 kg\""));
+    CHECK(place.run({"run", "heap.toml", "--out", "unborn", "--checkpoint-every", "1"}) == 2);
+    CHECK_FALSE(fs::exists(place / "unborn"));
     CHECK(place.run({"resume", "nowhere"}) == 2);
     CHECK(holds(place.err(), "nowhere: there is no checkpoint (checkpoint.h5) in this folder"));
   }

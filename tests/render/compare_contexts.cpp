@@ -61,15 +61,15 @@ int main() {
     std::printf("skipped: this build draws with %s alone\n", kinds.front().name);
     return kSkipped;
   }
-  const test::Folder folder("contexts");
+  const test::MadeFolder folder;
   for (const detail::ContextKind& kind : kinds) {
     if (!paint_in_a_process(kind, folder)) return 1;
   }
   int different = 0;
   for (const std::string picture : {"plane", "space"}) {
-    const std::string expected = test::contents(file_of(folder, kinds.front(), picture));
+    const std::string expected = test::content(file_of(folder, kinds.front(), picture));
     for (const detail::ContextKind& kind : kinds.subspan(1)) {
-      const bool same = test::contents(file_of(folder, kind, picture)) == expected;
+      const bool same = test::content(file_of(folder, kind, picture)) == expected;
       std::printf("%s: the picture of %s is %s that of %s\n", picture.c_str(), kind.name,
                   same ? "the same as" : "NOT", kinds.front().name);
       different += same ? 0 : 1;

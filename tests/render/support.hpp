@@ -5,37 +5,19 @@
 
 #include <lagrain/paint.hpp>
 
-#include <unistd.h>
+#include <support/files.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <string>
 
 namespace lagrain::test {
 
-/// A fresh folder, removed at the end of the test.
-struct Folder {
-  std::filesystem::path path;
-  explicit Folder(const std::string& name)
-      : path(std::filesystem::temp_directory_path() /
-             ("lagrain_" + name + "_" + std::to_string(getpid()))) {
-    std::filesystem::remove_all(path);
-    std::filesystem::create_directories(path);
-  }
-  ~Folder() { std::filesystem::remove_all(path); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
+/// A folder that is there, and empty at first.
+struct MadeFolder : Folder {
+  MadeFolder() { std::filesystem::create_directories(path); }
   bool empty() const { return std::filesystem::is_empty(path); }
 };
-
-inline std::string contents(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 /// One channel (0 red ... 3 alpha) of the pixel in column x and row y from the top.
 inline int pixel(const Image& image, int x, int y, int channel) {

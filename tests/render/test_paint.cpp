@@ -19,9 +19,9 @@
 #include <thread>
 
 using namespace lagrain;
-using lagrain::test::contents;
-using lagrain::test::Folder;
+using lagrain::test::content;
 using lagrain::test::ink;
+using lagrain::test::MadeFolder;
 using lagrain::test::mixed_list;
 using lagrain::test::pixel;
 using lagrain::test::psnr;
@@ -220,16 +220,16 @@ TEST_SUITE("paint") {
 
   TEST_CASE("the same list gives the same files") {
     const DisplayList list = mixed_list();
-    const Folder folder("paint");
+    const MadeFolder folder;
     for (const std::string name : {"a", "b"}) {
       paint_png(list, folder.path / (name + ".png"), 100);
       paint_pdf(list, folder.path / (name + ".pdf"));
       paint_svg(list, folder.path / (name + ".svg"));
     }
     for (const std::string ending : {".png", ".pdf", ".svg"}) {
-      CHECK(contents(folder.path / ("a" + ending)).size() > 5000);
+      CHECK(content(folder.path / ("a" + ending)).size() > 5000);
       const bool equal =
-          contents(folder.path / ("a" + ending)) == contents(folder.path / ("b" + ending));
+          content(folder.path / ("a" + ending)) == content(folder.path / ("b" + ending));
       CHECK_MESSAGE(equal, ending);
     }
     CHECK(std::distance(std::filesystem::directory_iterator(folder.path), {}) == 6);
@@ -250,9 +250,9 @@ TEST_SUITE("paint") {
   }
 
   TEST_CASE("a PNG knows its resolution") {
-    const Folder folder("paint_dpi");
+    const MadeFolder folder;
     paint_png(page(72), folder.path / "a.png", 300);
-    const std::string png = contents(folder.path / "a.png");
+    const std::string png = content(folder.path / "a.png");
     const auto at = png.find("pHYs");
 
     REQUIRE(at != std::string::npos);
@@ -261,7 +261,7 @@ TEST_SUITE("paint") {
   }
 
   TEST_CASE("a file that cannot be written is named, and nothing is left behind") {
-    const Folder folder("paint_error");
+    const MadeFolder folder;
     std::filesystem::create_directory(folder.path / "taken.png");
     const DisplayList list = page(20);
     for (const auto& path : {folder.path / "missing" / "a.png", folder.path / "taken.png"}) {

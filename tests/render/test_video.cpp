@@ -11,8 +11,8 @@
 #include <string>
 
 using namespace lagrain;
-using lagrain::test::contents;
-using lagrain::test::Folder;
+using lagrain::test::content;
+using lagrain::test::MadeFolder;
 
 namespace {
 
@@ -33,7 +33,7 @@ struct EmptyPath {
 
 TEST_SUITE("video") {
   TEST_CASE("without ffmpeg the frames become numbered pictures") {
-    const Folder folder("video_png");
+    const MadeFolder folder;
     const EmptyPath nothing;
 
     VideoWriter video(folder.path / "fall.mp4", 25);
@@ -43,12 +43,12 @@ TEST_SUITE("video") {
     CHECK_FALSE(report.encoded);
     CHECK(report.frames == 3);
     CHECK(report.path == folder.path / "fall_frames");
-    CHECK(contents(report.path / "000002.png").substr(1, 3) == "PNG");
+    CHECK(content(report.path / "000002.png").substr(1, 3) == "PNG");
     CHECK_FALSE(std::filesystem::exists(folder.path / "fall.mp4"));
   }
 
   TEST_CASE("a video that is not finished leaves nothing") {
-    const Folder folder("video_half");
+    const MadeFolder folder;
     {
       VideoWriter video(folder.path / "a.mp4", 25);
       if (std::system("command -v ffmpeg >/dev/null 2>&1") == 0) video.add(frame(0));
@@ -57,7 +57,7 @@ TEST_SUITE("video") {
   }
 
   TEST_CASE("wrong use of a video is refused") {
-    const Folder folder("video_wrong");
+    const MadeFolder folder;
 
     CHECK_THROWS_AS(VideoWriter(folder.path / "a.avi", 25), SceneError);
     CHECK_THROWS_AS(VideoWriter(folder.path / "missing" / "a.mp4", 25), SceneError);
@@ -76,7 +76,7 @@ TEST_SUITE("ffmpeg") {
       return;
     }
     for (const std::string ending : {".mp4", ".webm"}) {
-      const Folder folder("video");
+      const MadeFolder folder;
       for (const std::string name : {"it's a", "b"}) {
         VideoWriter video(folder.path / (name + ending), 25);
         for (int k = 0; k < 5; ++k) video.add(frame(k));
@@ -86,7 +86,7 @@ TEST_SUITE("ffmpeg") {
         CHECK(std::filesystem::file_size(report.path) > 500);
       }
       const bool equal =
-          contents(folder.path / ("it's a" + ending)) == contents(folder.path / ("b" + ending));
+          content(folder.path / ("it's a" + ending)) == content(folder.path / ("b" + ending));
       CHECK_MESSAGE(equal, ending);
       CHECK(std::distance(std::filesystem::directory_iterator(folder.path), {}) == 2);
     }

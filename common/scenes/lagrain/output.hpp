@@ -74,8 +74,8 @@ std::unique_ptr<Run<Dim>> resume_run(const Checkpoint& checkpoint, std::optional
 
 /// Goes on recording in the folder of the checkpoint, with the run that was made from it. What had
 /// been written there later is written anew, so that series and frames are those of a run that was
-/// left alone, bit for bit. (Columns near_pairs and refreshes tell of the search
-/// and may differ; losses are summed in its order, and may differ in their last digits.)
+/// left alone, bit for bit. Columns near_pairs and refreshes tell of the search and may differ;
+/// losses are summed in its order, and may differ in their last digits.
 /// @return see record
 template <int Dim>
 bool record_on(Run<Dim>& run, const Checkpoint& checkpoint, RecordOptions options);
