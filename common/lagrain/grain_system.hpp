@@ -42,6 +42,11 @@ class GrainSystem {
  public:
   static constexpr Needs needs = Law::needs;          ///< what the law needs
   using Memory = typename Law::template Memory<Dim>;  ///< what a contact remembers
+  /// Pairs with what their contacts remember.
+  /// @{
+  using PairMemories = typename NearList<Dim, Memory>::PairMemories;
+  using WallMemories = typename NearList<Dim, Memory>::WallMemories;
+  /// @}
 
   std::int64_t steps() const { return steps_; }                                     ///< made so far
   double time() const { return static_cast<double>(steps_) * setting_.time_step; }  ///< [s]
@@ -105,11 +110,13 @@ class GrainSystem {
     return true;
   }
 
-  /// Threads that share the steps from now on.
+  /// At most so many threads share the steps from now on: as many as pay on a machine that others
+  /// may use as well.
   /// @throws ContractError if there are none
   void use_threads(int threads) {
     LAGRAIN_EXPECTS(threads >= 1, "threads " + std::to_string(threads));
     setting_.threads = threads;
+    team_ = ThreadTeam(threads);
   }
   /// Keeps all that a simulation with the same laws, walls and setting needs to go on with the same
   /// bits, or restores it. What has been measured of its speed is not part of it.
@@ -219,8 +226,8 @@ class GrainSystem {
 
   /// f(block, thread) for every block, shared by the threads.
   template <class F>
-  void for_each_block(F&& f) {
-    share_among_threads(near_.blocks().size(), setting_.threads, f);
+  void for_each_block(const F& f) {
+    team_.share(near_.blocks().size(), f);
   }
 
   void sort_grains() {
@@ -333,6 +340,14 @@ class GrainSystem {
     return changed;
   }
 
+  /// Contacts remember what these entries say, by number, and no others anything.
+  void recall_contacts(PairMemories pairs, WallMemories wall_pairs) {
+    std::vector<int> slot_of(index(count()));
+    for (int slot = 0; slot < count(); ++slot) slot_of[index(store_.number(slot))] = slot;
+    near_.recall(std::move(pairs), std::move(wall_pairs), slot_of, count(), block_size());
+    update_triangulation(time());
+  }
+
   /// Grains and walls have come to where they are at time t [s].
   void expect_no_passage(double t) {
     watch_.expect_no_passage(
@@ -369,6 +384,7 @@ class GrainSystem {
   EnergyFlow flow_;
   double force_step_ = 0;  // what memories and losses advance by in an evaluation [s]
   std::int64_t steps_ = 0;
+  ThreadTeam team_;
   PhaseTimes times_;
   bool measuring_ = false;
 

@@ -31,14 +31,14 @@ class MovingGrain {
 
   /// Completes a step of length dt [s].
   /// @param before  force and torque of the evaluation before the last
-  void finish(const Record& record, const Load& before, double dt) {
+  [[gnu::always_inline]] void finish(const Record& record, const Load& before, double dt) {
     Motion::finish(x_, v_, a_, acceleration(record, before), dt);
     if constexpr (needs.spin) {
       Motion::finish(angle_, omega_, alpha_, spin_acceleration(record, before), dt);
     }
   }
   /// Brings the grain to where the forces of an evaluation are wanted.
-  void advance(int evaluation, double dt) {
+  [[gnu::always_inline]] void advance(int evaluation, double dt) {
     Motion::advance(evaluation, x_, v_, a_, dt);
     if constexpr (needs.spin) Motion::advance(evaluation, angle_, omega_, alpha_, dt);
   }

@@ -47,6 +47,9 @@ namespace lagrain {
 template <int Dim, class Memory>
 class NearList {
  public:
+  /// Pairs with what their contacts remember, as the first sees it.
+  using PairMemories = std::vector<std::pair<Pair, Memory>>;
+  using WallMemories = std::vector<std::pair<WallPair, Memory>>;  ///< the same for walls
   /// One end of a pair across blocks.
   struct End {
     int slot;          ///< of this end
@@ -222,6 +225,16 @@ class NearList {
   /// @param block_size  of slots from now on
   void renumber(const std::vector<int>& slot, int size, int block_size) {
     auto [pairs, wall_pairs] = memories();
+    recall(std::move(pairs), std::move(wall_pairs), slot, size, block_size);
+  }
+
+  /// Contacts remember what these entries say, and no others anything; after that the list waits
+  /// for a refresh.
+  /// @param slot        by which the grains that the entries name go from now on; -1 for none
+  /// @param size        number of grains from now on
+  /// @param block_size  of slots from now on
+  void recall(PairMemories pairs, WallMemories wall_pairs, const std::vector<int>& slot, int size,
+              int block_size) {
     for (auto& [pair, memory] : pairs) {
       pair = {slot[index(pair.i)], slot[index(pair.j)]};
       if (pair.i > pair.j) {
@@ -349,10 +362,6 @@ class NearList {
     return within_reach<Dim>(a.centre, radius[pair.i] + std::sqrt(a.squared_margin), b.centre,
                              radius[pair.j] + std::sqrt(b.squared_margin));
   }
-
-  /// Listed pairs with what their contacts remember.
-  using PairMemories = std::vector<std::pair<Pair, Memory>>;
-  using WallMemories = std::vector<std::pair<WallPair, Memory>>;
 
   /// Those of the pairs that remember anything: not all bits of their memories are zero.
   std::pair<PairMemories, WallMemories> memories() const {

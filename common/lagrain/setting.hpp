@@ -19,7 +19,7 @@ struct Setting {
   /// Of the smaller radius; beyond it, and where something passes through something within a step,
   /// the run stops. Infinite: it never does [-].
   double largest_overlap = kLargestOverlap;
-  int threads = 1;  ///< that share a step; results do not depend on it
+  int threads = 1;  ///< at most so many share a step; results do not depend on it
   InstructionSet instructions = instruction_sets().back();  ///< nor on this
   GravityCourse<Dim> gravity_course = SteadyGravity{};      ///< how gravity changes
 };

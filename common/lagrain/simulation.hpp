@@ -50,6 +50,7 @@ class Simulation : public GrainSystem<Dim, Law, N> {
 
  public:
   using System::needs;
+  using typename System::PairMemories, typename System::WallMemories;
 
   /// Evaluates the forces at time 0.
   /// @throws ContractError if the time step is not safe (the message names the safe one), a
@@ -152,20 +153,35 @@ class Simulation : public GrainSystem<Dim, Law, N> {
                        time_scales(joined(store_.by_number(), kept, newcomers), laws_, walls_));
     }
     const auto changed = exchange_grains(kept, newcomers);
-    find_forces(0, this->time(), [&](std::size_t b, const Load* loads) {
-      const auto& block = near_.blocks()[b];
-      for (int slot = block.first_slot; slot < block.end_slot; ++slot) {
-        if (!changed.grains[static_cast<std::size_t>(store_.number(slot))]) continue;
-        store_.load(slot) = loads[slot - block.first_slot];
-      }
-    });
-    for (std::size_t w = 0; w < walls_.size(); ++w) {
-      if (!changed.walls[w]) continue;
-      const WallLoad<Dim> load = forces_.wall_load(w);
-      walls_[w].force = load.force;
-      walls_[w].torque = load.torque;
+    evaluate_anew([&](int i) { return changed.grains[static_cast<std::size_t>(i)]; },
+                  [&](std::size_t w) { return changed.walls[w]; });
+  }
+
+  /// Before the first step: contacts remember what they remembered in another simulation, from
+  /// which the grains come. Who does not touch any more forgets.
+  /// @param pairs       by number, as the first sees the contact
+  /// @param wall_pairs  by number
+  /// @throws ContractError if steps were made, or a pair is not one of grains or of a grain and a
+  ///         piece of a wall
+  void recall(PairMemories pairs, WallMemories wall_pairs) {
+    LAGRAIN_EXPECTS(steps_ == 0,
+                    "contacts recall before the first step, not after " + std::to_string(steps_));
+    const auto is_grain = [&](int i) { return 0 <= i && i < this->count(); };
+    for (const auto& entry : pairs) {
+      const Pair& pair = entry.first;
+      LAGRAIN_EXPECTS(is_grain(pair.i) && is_grain(pair.j) && pair.i != pair.j,
+                      "pair " + std::to_string(pair.i) + ", " + std::to_string(pair.j));
     }
-    store_.outdate();
+    for (const auto& entry : wall_pairs) {
+      const WallPair& pair = entry.first;
+      const bool is_wall = 0 <= pair.wall && static_cast<std::size_t>(pair.wall) < walls_.size();
+      LAGRAIN_EXPECTS(is_grain(pair.i) && is_wall && 0 <= pair.piece &&
+                          pair.piece < walls_[static_cast<std::size_t>(pair.wall)].piece_count(),
+                      "grain " + std::to_string(pair.i) + " and piece " +
+                          std::to_string(pair.piece) + " of wall " + std::to_string(pair.wall));
+    }
+    this->recall_contacts(std::move(pairs), std::move(wall_pairs));
+    evaluate_anew([](int) { return true; }, [](std::size_t) { return true; });
   }
 
  private:
@@ -174,7 +190,7 @@ class Simulation : public GrainSystem<Dim, Law, N> {
   using System::body_forces_, System::driven_, System::driven_in_blocks_, System::driven_load_;
   using System::flow_, System::force_step_, System::forces_, System::laws_, System::measuring_,
       System::near_, System::setting_, System::steps_, System::store_, System::strays_,
-      System::times_, System::walls_, System::watch_;
+      System::team_, System::times_, System::walls_, System::watch_;
   using typename System::Load;
   using typename System::Record;
   using Moving = MovingGrain<Dim, needs, Motion>;
@@ -229,6 +245,26 @@ class Simulation : public GrainSystem<Dim, Law, N> {
     flow_.driven_work += 0.5 * time_step * (power + driven_load_.power);
   }
 
+  /// Forces where grains and walls are now, between two steps: nothing advances.
+  /// @param grain_takes  whether a grain takes its new force: grain_takes(number)
+  /// @param wall_takes   the same for walls
+  template <class GrainTakes, class WallTakes>
+  void evaluate_anew(GrainTakes&& grain_takes, WallTakes&& wall_takes) {
+    find_forces(0, this->time(), [&](std::size_t b, const Load* loads) {
+      const auto& block = near_.blocks()[b];
+      for (int slot = block.first_slot; slot < block.end_slot; ++slot) {
+        if (grain_takes(store_.number(slot))) store_.load(slot) = loads[slot - block.first_slot];
+      }
+    });
+    for (std::size_t w = 0; w < walls_.size(); ++w) {
+      if (!wall_takes(w)) continue;
+      const WallLoad<Dim> load = forces_.wall_load(w);
+      walls_[w].force = load.force;
+      walls_[w].torque = load.torque;
+    }
+    store_.outdate();
+  }
+
   static void expect_no_change(const char* change) {
     LAGRAIN_EXPECTS(!Motion::kConservativeOnly,
                     std::string(Motion::kName) + " integrates conservative scenes: no " + change);
@@ -244,9 +280,10 @@ class Simulation : public GrainSystem<Dim, Law, N> {
       move_seconds_[b] = watch.seconds();
     });
     const auto [tally, pair_seconds, wall_seconds] = forces_.totals();
-    times_.pairs += pair_seconds / setting_.threads;
-    times_.walls += wall_seconds / setting_.threads;
-    for (const double moving : move_seconds_) times_.integration += moving / setting_.threads;
+    const int threads = team_.size();
+    times_.pairs += pair_seconds / threads;
+    times_.walls += wall_seconds / threads;
+    for (const double moving : move_seconds_) times_.integration += moving / threads;
     flow_.dashpot += tally.dashpot;
     flow_.friction += tally.friction;
     for (std::size_t w = 0; w < walls_.size(); ++w) {

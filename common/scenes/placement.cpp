@@ -4,6 +4,7 @@
 #include "grain_file.hpp"
 #include "placing.hpp"
 #include "pushing.hpp"
+#include "start.hpp"
 
 #include <lagrain/numbers.hpp>
 #include <lagrain/random.hpp>
@@ -107,23 +108,34 @@ class Placer {
   explicit Placer(const Scene<Dim>& scene)
       : scene_(scene),
         apart_(scene.apart()),
-        walls_(scene.walls),
+        start_(start_of(scene)),
+        walls_(start_.walls),
         listed_(read_files(scene)),
-        cell_(cell_size(scene, listed_)),
+        cell_(cell_size(scene, start_.grains, listed_)),
         occupied_(cell_) {
     for (Wall<Dim>& wall : walls_) wall.advance(0, 0);
   }
 
   Placement<Dim> place() {
+    for (const PlacedGrain<Dim>& grain : start_.grains) place_as_it_was(grain);
     for (const PlacedGrain<Dim>& grain : scene_.grains) place_by_hand(grain);
     for (const auto& file : listed_) {
       for (const PlacedGrain<Dim>& grain : file.grains) place_by_hand(grain);
     }
     for (std::size_t f = 0; f < scene_.fills.size(); ++f) fill(f);
+    placed_.walls = std::move(start_.walls);
+    placed_.recalled = std::move(start_.recalled);
+    placed_.origin = std::move(start_.origin);
     return std::move(placed_);
   }
 
  private:
+  static detail::Start<Dim> start_of(const Scene<Dim>& scene) {
+    if (scene.start) return detail::read_start(scene);
+    detail::Start<Dim> nothing;
+    nothing.walls = scene.walls;
+    return nothing;
+  }
   static std::vector<detail::ListedGrains<Dim>> read_files(const Scene<Dim>& scene) {
     std::vector<detail::ListedGrains<Dim>> files;
     for (std::size_t k = 0; k < scene.grain_files.size(); ++k) {
@@ -133,7 +145,7 @@ class Placer {
   }
 
   /// Wide enough for most grains to lie in a few cells, and no grain in too many.
-  static double cell_size(const Scene<Dim>& scene,
+  static double cell_size(const Scene<Dim>& scene, const std::vector<PlacedGrain<Dim>>& start,
                           const std::vector<detail::ListedGrains<Dim>>& listed) {
     double small = std::numeric_limits<double>::infinity();
     double large = 0;
@@ -142,15 +154,18 @@ class Placer {
       large = std::max(large, r);
     };
     for (const auto& fill : scene.fills) consider(largest(fill.radius));
-    for (const auto& file : listed) {
+    const auto consider_mean = [&](const std::vector<PlacedGrain<Dim>>& grains) {
+      if (grains.empty()) return;
       double sum = 0;
-      for (const auto& grain : file.grains) {
+      for (const auto& grain : grains) {
         sum += grain.radius;
         large = std::max(large, grain.radius);
       }
-      consider(sum / static_cast<double>(file.grains.size()));
-    }
-    const bool alone = scene.fills.empty() && listed.empty();
+      consider(sum / static_cast<double>(grains.size()));
+    };
+    consider_mean(start);
+    for (const auto& file : listed) consider_mean(file.grains);
+    const bool alone = scene.fills.empty() && listed.empty() && start.empty();
     for (const auto& grain : scene.grains) {
       large = std::max(large, grain.radius);
       if (alone) small = std::min(small, grain.radius);
@@ -158,14 +173,18 @@ class Placer {
     return std::max(2 * small, large / 50);
   }
 
-  /// A refusal of a grain that was placed by hand or listed in a file: by the scene's key, or by
-  /// file and line.
+  /// A refusal of a grain that no fill has placed: by the scene's key, or by file and line.
   SceneError refusal(std::size_t grain, const std::string& message) const {
-    const std::size_t by_hand = scene_.grains.size();
-    return grain < by_hand ? scene_.error(name_of(grain), message)
-                           : SceneError(name_of(grain) + ": " + message);
+    const std::size_t of_start = start_.grains.size();
+    if (grain < of_start) return scene_.error("start", name_of(grain) + " " + message);
+    return grain - of_start < scene_.grains.size() ? scene_.error(name_of(grain), message)
+                                                   : SceneError(name_of(grain) + ": " + message);
   }
   std::string name_of(std::size_t grain) const {
+    if (grain < start_.ids.size()) {
+      return "grain " + std::to_string(start_.ids[grain]) + " of " + scene_.start->run.string();
+    }
+    grain -= start_.ids.size();
     if (grain < scene_.grains.size()) return "grain[" + std::to_string(grain) + "]";
     grain -= scene_.grains.size();
     std::size_t file = 0;
@@ -200,6 +219,28 @@ class Placer {
       }
       return true;
     });
+    add(grain_like(p), -1);
+  }
+
+  /// Grains of another run overlap as they did there; walls may have come nearer since.
+  void place_as_it_was(const PlacedGrain<Dim>& p) {
+    const std::size_t index = placed_.grains.size();
+    for (const Wall<Dim>& wall : walls_) {
+      if ((p.held() && !wall.yields()) || apart(p.material, wall.material)) continue;
+      const double distance = wall.foot(p.position).distance;
+      if (distance < 0) throw refusal(index, "lies behind wall \"" + wall.name + "\"");
+      const double overlap = (p.radius - distance) / p.radius;
+      if (overlap > scene_.largest_overlap) {
+        throw refusal(index, "overlaps wall \"" + wall.name + "\" by " + rounded(100 * overlap) +
+                                 " % of its radius (limit " +
+                                 rounded(100 * scene_.largest_overlap) +
+                                 " %, largest_overlap); move that wall away");
+      }
+    }
+    add(grain_like(p), -1);
+  }
+
+  Grain<Dim> grain_like(const PlacedGrain<Dim>& p) const {
     Grain<Dim> grain;
     grain.position = p.position;
     grain.velocity = p.velocity;
@@ -210,7 +251,7 @@ class Placer {
     grain.material = p.material;
     grain.mass = scene_.materials[static_cast<std::size_t>(p.material)].density *
                  grain_volume<Dim>(p.radius, scene_.depth);
-    add(grain, -1);
+    return grain;
   }
 
   bool apart(int a, int b) const {
@@ -423,6 +464,7 @@ class Placer {
 
   const Scene<Dim>& scene_;
   MaterialsApart apart_;
+  detail::Start<Dim> start_;
   std::vector<Wall<Dim>> walls_;  // where the run begins: a path may begin elsewhere
   std::vector<detail::ListedGrains<Dim>> listed_;  // of each file
   double cell_;                                    // [m]

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "start.hpp"
+
 #include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 
@@ -88,17 +90,19 @@ class Recorder {
       : run_(run),
         options_(options),
         samples_(run, or_else(run.scene().output.series_every, run.scene().duration / 1000)),
-        frames_(run, or_else(run.scene().output.frames_every, run.scene().duration)) {
-    formats_.push_back(std::make_unique<CsvFormat<Dim>>(options.folder));
-  }
+        frames_(run, or_else(run.scene().output.frames_every, run.scene().duration)),
+        formats_(make_formats<Dim>(run.scene().output, options.folder)),
+        tables_(options.folder) {}
 
   /// Begins an empty folder.
   void begin() {
     make_folder(options_.folder);
+    write_scene();
     std::error_code ignored;
     fs::remove(options_.folder / "summary.txt", ignored);
     remove_checkpoints(options_.folder);
-    write_scene();
+    remove_last();
+    tables_.begin(run_);
     for (auto& format : formats_) format->begin(run_);
   }
 
@@ -121,7 +125,9 @@ class Recorder {
     double spent = seconds_spent();
     here("seconds", spent);
     spent_before_ = visit.restores() ? spent : spent_before_;
-    for (auto& format : formats_) format->persist(run_, here.in("csv"), frame_count_);
+    if (visit.restores()) remove_last();
+    tables_.persist(here.in("csv"));
+    for (auto& format : formats_) format->persist(run_, here.in("formats"), frame_count_);
   }
 
   bool run() {
@@ -137,8 +143,8 @@ class Recorder {
         if (checkpoint_is_due()) write_checkpoint();
       }
     } catch (const SimulationError& error) {
-      fs::path kept;
-      for (auto& format : formats_) kept = format->write_last(run_, last_good_);
+      const fs::path kept = options_.folder / kLastGood;
+      write_file(kept, frame_csv(run_, last_good_));
       write_summary(std::string("broke off: ") + error.what(), false);
       throw SimulationError(std::string(error.what()) + "; the state at t = " +
                             shortest(last_good_.time) + " s is kept in " + kept.string());
@@ -158,6 +164,9 @@ class Recorder {
     const Scene<Dim> scene = scene_with_copies();
     std::vector<std::string> texts;
     for (const auto& grains : run_.scene().grain_files) texts.push_back(read_file(grains.file));
+    if (scene.start) {
+      write_file(options_.folder / scene.start->run, detail::start_bytes(*run_.scene().start));
+    }
     for (std::size_t k = 0; k < texts.size(); ++k) {
       write_file(options_.folder / scene.grain_files[k].file, texts[k]);
     }
@@ -167,6 +176,12 @@ class Recorder {
  private:
   using Clock = std::chrono::steady_clock;
   static constexpr std::int64_t kStepsBetweenCopies = 64;  // of the state, in case all goes wrong
+  static constexpr const char* kLastGood = "last.csv";
+
+  void remove_last() const {
+    std::error_code ignored;
+    fs::remove(options_.folder / kLastGood, ignored);
+  }
 
   /// The scene that reads these copies.
   Scene<Dim> scene_with_copies() const {
@@ -174,6 +189,7 @@ class Recorder {
     for (std::size_t k = 0; k < scene.grain_files.size(); ++k) {
       scene.grain_files[k].file = "grains_" + std::to_string(k + 1) + ".csv";
     }
+    if (scene.start) scene.start->run = "start.h5";
     return scene;
   }
 
@@ -207,7 +223,7 @@ class Recorder {
     const Ledger now = run_.ledger();
     const ContactStatistics statistics = run_.statistics();
     const Sample sample = sample_of(run_, now, statistics);
-    for (auto& format : formats_) format->add_sample(sample);
+    tables_.add_sample(sample);
     largest_.look_at(now, run_.start(), statistics);
     last_sample_ = run_.steps();
   }
@@ -215,6 +231,7 @@ class Recorder {
   void write_frame() {
     const Frame<Dim> frame = Frame<Dim>::of(run_);
     for (auto& format : formats_) format->add_frame(run_, frame, frame_count_);
+    tables_.add_frame(frame, frame_count_);
     ++frame_count_;
     last_frame_ = run_.steps();
   }
@@ -275,7 +292,7 @@ class Recorder {
     const auto begin = Clock::now();
     State state;
     persist(StateVisitor::keeping(state));
-    for (auto& format : formats_) format->sync_to_disk();
+    tables_.sync_to_disk();
     lagrain::write_checkpoint(options_.folder, state);
     checkpoint_at_ = Clock::now();
     checkpoint_took_ = seconds_since(begin);
@@ -292,8 +309,9 @@ class Recorder {
 
   Run<Dim>& run_;
   const RecordOptions& options_;
-  std::vector<std::unique_ptr<RunFormat<Dim>>> formats_;
   Schedule<Dim> samples_, frames_;
+  std::vector<std::unique_ptr<FrameFormat<Dim>>> formats_;
+  RunTables<Dim> tables_;
   std::int64_t frame_count_ = 0;
   std::int64_t last_frame_ = -1;   // step
   std::int64_t last_sample_ = -1;  // step
@@ -311,6 +329,30 @@ class Recorder {
 }  // namespace
 
 const char* version() { return LAGRAIN_VERSION; }
+
+template <int Dim>
+OutputEstimate estimate_output(const Run<Dim>& run) {
+  const OutputPlan& plan = run.scene().output;
+  const auto times = [&](double every, double otherwise) {
+    return std::floor(run.scene().duration / (every > 0 ? every : otherwise)) + 1;
+  };
+  const ContactStatistics now = run.statistics();
+  const double contacts =
+      std::max(static_cast<double>(now.contacts + now.wall_contacts), 1.0 * Dim * run.count());
+  OutputEstimate estimate;
+  estimate.frames = times(plan.frames_every, run.scene().duration);
+  for (const auto& format : make_formats<Dim>(plan, {})) {
+    estimate.bytes_per_frame += format->bytes_per_frame(run, contacts);
+  }
+  constexpr double kBytesPerNumber = 12;  // of the series, where many are short
+  const double row = kBytesPerNumber * static_cast<double>(series_columns(run).size());
+  const ModelSize size = run.size();
+  const double checkpoint = run.count() * static_cast<double>(size.per_grain) +
+                            contacts * static_cast<double>(size.memory_per_pair);
+  estimate.bytes = estimate.frames * estimate.bytes_per_frame +
+                   times(plan.series_every, run.scene().duration / 1000) * row + 2 * checkpoint;
+  return estimate;
+}
 
 template <int Dim>
 bool record(Run<Dim>& run, const RecordOptions& options) {
@@ -337,6 +379,7 @@ std::unique_ptr<Run<Dim>> resume_run(const Checkpoint& checkpoint, std::optional
   for (GrainFile<Dim>& grains : scene.grain_files) {
     grains.file = checkpoint.file.parent_path() / grains.file;
   }
+  if (scene.start) scene.start->run = checkpoint.file.parent_path() / scene.start->run;
   if (until) {
     // Rows of the series stay as close to each other as they were.
     OutputPlan& output = scene.output;
@@ -369,6 +412,8 @@ bool record_on(Run<Dim>& run, const Checkpoint& checkpoint, RecordOptions option
   return recorder.run();
 }
 
+template OutputEstimate estimate_output<2>(const Run<2>&);
+template OutputEstimate estimate_output<3>(const Run<3>&);
 template bool record<2>(Run<2>&, const RecordOptions&);
 template bool record<3>(Run<3>&, const RecordOptions&);
 template std::unique_ptr<Run<2>> resume_run<2>(const Checkpoint&, std::optional<double>, int);

@@ -7,6 +7,7 @@
 #include <lagrain/all_pairs.hpp>
 #include <lagrain/cell_grid.hpp>
 #include <lagrain/numbers.hpp>
+#include <lagrain/output.hpp>
 #include <lagrain/overlap_estimate.hpp>
 #include <lagrain/triangulation2.hpp>
 #include <lagrain/triangulation3.hpp>
@@ -22,7 +23,9 @@ namespace lagrain {
 
 template <int Dim>
 Run<Dim>::Run(Scene<Dim> scene, Placement<Dim> placement)
-    : scene_(std::move(scene)), groups_(std::move(placement.group)) {
+    : scene_(std::move(scene)),
+      groups_(std::move(placement.group)),
+      origin_(std::move(placement.origin)) {
   std::vector<bool> pinned;
   for (const Grain<Dim>& grain : placement.grains) {
     materials_.push_back(grain.material);
@@ -258,6 +261,7 @@ std::string explain(const Run<Dim>& run) {
   line("neighbourhood", std::string(name_of(scene.neighbourhood)));
   if (!is_steady(scene.gravity_course)) line("gravity", "changes in time");
   if (scene.drag) line("drag", "linear in the velocity");
+  if (!run.origin().empty()) line("start", run.origin());
   line("grains", std::to_string(run.count()) + (run.drives() ? ", some of them driven" : ""));
   line("walls", std::to_string(run.walls().size()));
   for (const Inlet<Dim>& inlet : scene.inlets) {
@@ -310,6 +314,9 @@ std::string explain(const Run<Dim>& run) {
     line("overlap", "none to be guessed: at the start nothing moves or weighs");
   }
   line("steps", std::to_string(run.steps_planned()) + " for " + rounded(scene.duration) + " s");
+  const OutputEstimate output = estimate_output(run);
+  line("output", "about " + rounded(output.bytes / 1e6, 2) + " MB: " + rounded(output.frames, 9) +
+                     " frames of " + rounded(output.bytes_per_frame / 1e6, 2) + " MB");
   const ModelSize size = run.size();
   const auto bytes = [&](std::size_t whole, std::size_t part, const char* what) {
     return std::to_string(whole) +
@@ -334,6 +341,7 @@ std::vector<std::pair<std::string, std::string>> facts(const Run<Dim>& run) {
   };
   const auto s = run.statistics();
   const Ledger now = run.ledger();
+  if (!run.origin().empty()) fact("start", run.origin());
   fact("grains", std::to_string(run.count()));
   fact("steps", std::to_string(run.steps()));
   fact("time", rounded(run.time(), 6) + " s");

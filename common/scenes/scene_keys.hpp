@@ -112,6 +112,8 @@ inline constexpr Key kDriven{"driven"};
 inline constexpr Key kSpin{"spin", kAngularVelocity};
 
 inline constexpr Key kFile{"file"};
+inline constexpr Key kRun{"run"};
+inline constexpr Key kInstant{"time"};
 inline constexpr Key kShift{"shift", kLength};
 inline constexpr Key kAtRest{"at_rest"};
 
@@ -158,6 +160,7 @@ inline constexpr Key kAngle{"angle", detail::kAngle};
 inline constexpr Key kSlices{"slices"};
 
 inline constexpr Key kFramesEvery{"frames_every", kTime, Range::positive};
+inline constexpr Key kFormats{"formats"};
 inline constexpr Key kSeriesEvery{"series_every", kTime, Range::positive};
 inline constexpr Key kContacts{"contacts"};
 
@@ -188,6 +191,11 @@ inline constexpr std::array kNeighbourhoodWords{
 inline constexpr std::array kArrangementWords{Word<Arrangement>{"lattice", Arrangement::lattice},
                                               Word<Arrangement>{"random", Arrangement::random}};
 
+inline constexpr std::array kFormatWords{Word<OutputFormat>{"csv", OutputFormat::csv},
+                                         Word<OutputFormat>{"vtp", OutputFormat::vtp},
+                                         Word<OutputFormat>{"xyz", OutputFormat::xyz}};
+/// The one value of `time`.
+inline constexpr std::string_view kLastState = "last";
 inline constexpr std::array kShareWords{Word<Share>{"number", Share::number},
                                         Word<Share>{"mass", Share::mass}};
 

@@ -218,6 +218,7 @@ class Reader {
     read_drag();
     read_materials();
     read_laws();
+    read_start();
     top_.for_each(keys::kFill, [&](TomlTable& s, int) { read_fill(s); });
     top_.for_each(keys::kGrain, [&](TomlTable& s, int) { read_grain(s); });
     top_.for_each(keys::kGrains, [&](TomlTable& s, int) { read_grain_file(s); });
@@ -231,10 +232,10 @@ class Reader {
     read_output();
     top_.finish();
     if (scene_.fills.empty() && scene_.grains.empty() && scene_.grain_files.empty() &&
-        scene_.inlets.empty()) {
+        scene_.inlets.empty() && !scene_.start) {
       throw SceneError(file_.name +
                        ": no grains: expected at least one [[fill]], [[grain]], "
-                       "[[grains]] or [[inlet]]");
+                       "[[grains]], [[inlet]] or start");
     }
     return std::move(scene_);
   }
@@ -577,6 +578,16 @@ class Reader {
     if (s.has(keys::kVelocity)) grain.velocity = s.vector<Dim>(keys::kVelocity);
     read_spin(s, grain.spin);
     scene_.grains.push_back(grain);
+  }
+
+  void read_start() {
+    if (!top_.has(keys::kStart)) return;
+    TomlTable s = top_.table(keys::kStart, "a run, such as { run = \"runs/bed\" }");
+    if (!s.has(keys::kRun)) s.missing(keys::kRun, "the folder of a run");
+    scene_.start.emplace(folder_ / s.text(keys::kRun));
+    // A run keeps no other state whole.
+    if (s.has(keys::kInstant)) s.word(keys::kInstant, {detail::kLastState});
+    s.finish();
   }
 
   void read_grain_file(TomlTable& s) {
@@ -1104,7 +1115,23 @@ class Reader {
     plan.frames_every = s.number(keys::kFramesEvery, plan.frames_every);
     plan.series_every = s.number(keys::kSeriesEvery, plan.series_every);
     plan.contacts = s.flag(keys::kContacts, plan.contacts);
+    if (s.has(keys::kFormats)) plan.formats = read_formats(s);
     s.finish();
+  }
+
+  static std::vector<OutputFormat> read_formats(TomlTable& s) {
+    const char* what = "a list of \"csv\", \"vtp\", \"xyz\", each at most once";
+    std::vector<OutputFormat> formats;
+    for (const std::string& text : s.texts(keys::kFormats, what, what)) {
+      const auto word = std::find_if(detail::kFormatWords.begin(), detail::kFormatWords.end(),
+                                     [&](const auto& w) { return w.text == text; });
+      if (word == detail::kFormatWords.end() ||
+          std::find(formats.begin(), formats.end(), word->value) != formats.end()) {
+        s.expected(keys::kFormats, what);
+      }
+      formats.push_back(word->value);
+    }
+    return formats;
   }
 
   /// A piston that holds a pressure between walls that may come later.

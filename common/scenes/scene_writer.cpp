@@ -134,6 +134,11 @@ class Writer {
         out_.add(keys::kTouch, false);
       }
     }
+    if (scene_.start) {
+      out_.table("[" + std::string(keys::kStart.name) + "]");
+      out_.add(keys::kRun, std::string_view(scene_.start->run.string()));
+      out_.add(keys::kInstant, detail::kLastState);
+    }
     for (const Fill<Dim>& fill : scene_.fills) write_fill(fill);
     for (const PlacedGrain<Dim>& grain : scene_.grains) write_grain(grain);
     for (const GrainFile<Dim>& grains : scene_.grain_files) write_grain_file(grains);
@@ -494,6 +499,11 @@ class Writer {
     if (plan.frames_every > 0) out_.add(keys::kFramesEvery, plan.frames_every);
     if (plan.series_every > 0) out_.add(keys::kSeriesEvery, plan.series_every);
     out_.add(keys::kContacts, plan.contacts);
+    std::string formats;
+    for (const OutputFormat format : plan.formats) {
+      formats += (formats.empty() ? "" : ", ") + in_toml(text_of(detail::kFormatWords, format));
+    }
+    out_.as_it_is(keys::kFormats, "[" + formats + "]");
   }
 
   const Scene<Dim>& scene_;

@@ -24,8 +24,8 @@ class SimulationRun final : public Run<Dim> {
   using Sim = Simulation<Dim, Law, Motion, AnyNeighbourhood<Dim>>;
 
   SimulationRun(Scene<Dim> scene, Placement<Dim> placement, Grains<Dim, Law::needs> grains,
-                LawTable<Law> laws, std::vector<Wall<Dim>> walls, TimeScales scales,
-                AnyNeighbourhood<Dim> neighbourhood)
+                LawTable<Law> laws, std::vector<Wall<Dim>> walls, const RecalledContacts& recalled,
+                TimeScales scales, AnyNeighbourhood<Dim> neighbourhood)
       : Run<Dim>(scene, std::move(placement)),
         scales_(scales),
         sim_(std::move(grains), std::move(laws), std::move(walls),
@@ -36,6 +36,7 @@ class SimulationRun final : public Run<Dim> {
              std::move(neighbourhood)) {
     // The reader has refused drag for integrators of conservative scenes.
     if (scene.drag) sim_.add_force("drag", *scene.drag);
+    recall(recalled);
     this->started();
   }
 
@@ -107,6 +108,26 @@ class SimulationRun final : public Run<Dim> {
   }
   bool near_is_valid() const override { return sim_.near_list_holds(); }
 
+  void recall(const RecalledContacts& recalled) {
+    if constexpr (Sim::Memory::kReals > 0) {
+      if (recalled.pairs.empty() && recalled.at_walls.empty()) return;
+      const auto entries = []<class P>(const std::vector<P>& pairs,
+                                       const Eigen::MatrixXd& numbers) {
+        std::vector<std::pair<P, typename Sim::Memory>> list;
+        for (std::size_t k = 0; k < pairs.size(); ++k) {
+          typename Sim::Memory memory;
+          for (int r = 0; r < Sim::Memory::kReals; ++r) {
+            memory[r] = numbers(r, static_cast<Eigen::Index>(k));
+          }
+          list.emplace_back(pairs[k], memory);
+        }
+        return list;
+      };
+      sim_.recall(entries(recalled.pairs, recalled.memories),
+                  entries(recalled.at_walls, recalled.wall_memories));
+    }
+  }
+
   TimeScales scales_;
   Sim sim_;
 };
@@ -143,7 +164,7 @@ std::unique_ptr<Run<Dim>> make_run_of(const Scene<Dim>& scene, Placement<Dim> pl
 
   std::vector<Grain<Dim>> all = smallest_newcomers(scene);
   all.insert(all.end(), placement.grains.begin(), placement.grains.end());
-  const TimeScales scales = time_scales(make_grains<Dim, Law::needs>(all), laws, scene.walls);
+  const TimeScales scales = time_scales(make_grains<Dim, Law::needs>(all), laws, placement.walls);
   if (scene.time_step.seconds <= 0 && !std::isfinite(scales.contact)) {
     throw scene.error("time_step", why_no_contact(scene) +
                                        ", so no contact sets a step; give one in seconds, "
@@ -163,10 +184,12 @@ std::unique_ptr<Run<Dim>> make_run_of(const Scene<Dim>& scene, Placement<Dim> pl
 
   expect_slow_drag(resolved, all);
 
+  const auto walls = std::move(placement.walls);
+  const auto recalled = std::move(placement.recalled);
   const auto finish = [&]<class Motion>(Motion) -> std::unique_ptr<Run<Dim>> {
     return std::make_unique<SimulationRun<Dim, Law, Motion>>(
-        std::move(resolved), std::move(placement), std::move(grains), std::move(laws), scene.walls,
-        scales, std::move(neighbourhood));
+        std::move(resolved), std::move(placement), std::move(grains), std::move(laws), walls,
+        recalled, scales, std::move(neighbourhood));
   };
   switch (scene.integrator) {
     case IntegratorModel::symplectic_euler:

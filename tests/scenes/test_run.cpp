@@ -201,10 +201,57 @@ TEST_SUITE("run") {
     CHECK(frame.substr(frame.find('\n'), 7) == "\n0,0.05");
     const std::string contacts = content(first.path / "contacts/0004.csv");
     CHECK(contacts.substr(0, contacts.find('\n')) ==
-          (S::Dim == 2 ? "i[-],j[-],overlap[m],nx[-],ny[-],fx[N],fy[N]"
-                       : "i[-],j[-],overlap[m],nx[-],ny[-],nz[-],fx[N],fy[N],fz[N]"));
+          (S::Dim == 2 ? "i[-],j[-],wall[-],overlap[m],nx[-],ny[-],fx[N],fy[N]"
+                       : "i[-],j[-],wall[-],overlap[m],nx[-],ny[-],nz[-],fx[N],fy[N],fz[N]"));
     CHECK(content(first.path / "series.csv").substr(0, 18) == "time[s],kinetic[J]");
     CHECK(content(first.path / "summary.txt").find("finished") != std::string::npos);
+  }
+
+  TEST_CASE_TEMPLATE("a contact in a file is between two grains, or a grain and a wall", S,
+                     Space<2>, Space<3>) {
+    const auto run = make_run(scene_of<S::Dim>(kHeap));
+    run->advance_to(0.02);
+    std::istringstream lines(contacts_csv(*run));
+    std::string line;
+    std::getline(lines, line);
+    std::size_t rows = 0, at_walls = 0;
+    for (; std::getline(lines, line); ++rows) {
+      int i = -2, j = -2, wall = -2;
+      char comma = 0;
+      std::istringstream(line) >> i >> comma >> j >> comma >> wall;
+      CHECK((j == -1) != (wall == -1));
+      if (wall >= 0) {
+        ++at_walls;
+        CHECK(wall < static_cast<int>(run->walls().size()));
+      } else {
+        CHECK(i < j);
+      }
+    }
+    CHECK(rows == run->contacts().size());
+    CHECK(at_walls > 0);
+    CHECK(rows > at_walls);
+  }
+
+  TEST_CASE_TEMPLATE("what a run will write is guessed to a factor of two", S, Space<2>, Space<3>) {
+    const std::string many =
+        with(with(kHeap, "count = 12", "count = 600"), "high = [\"0.1 m\", \"0.2 m\"]",
+             S::Dim == 2 ? "high = [0.4, 1]" : "high = [\"0.2 m\", \"0.4 m\"]");
+    for (const char* const formats :
+         {"\"csv\"", "\"vtp\"", "\"xyz\"", "\"csv\", \"xyz\", \"vtp\""}) {
+      CAPTURE(formats);
+      const Folder folder;
+      const auto run = make_run(scene_of<S::Dim>(
+          many + "[output]\nframes_every = \"2 ms\"\nformats = [" + formats + "]\n"));
+      const OutputEstimate guess = estimate_output(*run);
+      REQUIRE(record(*run, {folder.path, {}, {}}));
+      double bytes = 0;
+      for (const auto& entry : fs::recursive_directory_iterator(folder.path)) {
+        if (entry.is_regular_file()) bytes += static_cast<double>(entry.file_size());
+      }
+      CHECK(guess.frames == 11);
+      CHECK(guess.bytes < 2 * bytes);
+      CHECK(guess.bytes > bytes / 2);
+    }
   }
 
   TEST_CASE_TEMPLATE("a run that is stopped keeps what was computed", S, Space<2>, Space<3>) {

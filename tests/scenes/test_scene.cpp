@@ -133,8 +133,9 @@ TEST_SUITE("scene") {
     CHECK(after("dimension = 2", "dimension = 4") == "s.toml:2: dimension: expected 2 or 3, got 4");
     CHECK(message_of(with(kHeap, "density = 2000", "")) ==
           "s.toml:19: fill[0].material: grains of \"gravel\" need [materials.gravel] density");
-    CHECK(message_of(kHeap.substr(0, kHeap.find("[[fill]]"))) ==
-          "s.toml: no grains: expected at least one [[fill]], [[grain]], [[grains]] or [[inlet]]");
+    CHECK(
+        message_of(kHeap.substr(0, kHeap.find("[[fill]]"))) ==
+        "s.toml: no grains: expected at least one [[fill]], [[grain]], [[grains]], [[inlet]] or start");
   }
 
   TEST_CASE("a key that the model does not use is an error") {

@@ -147,6 +147,8 @@ high = [1, 1]
 [[grain]]
 position = [3, 3]
 radius = 0.01
+[start]
+run = "runs/bed"
 [[grains]]
 file = "bed.csv"
 [[inlet]]
@@ -317,7 +319,7 @@ TEST_SUITE("scene page") {
     const Page page = read_page();
     const std::set<std::string> keys = all_keys();
     REQUIRE(keys.size() > 50);
-    REQUIRE(page.tables.size() == 23);
+    REQUIRE(page.tables.size() == 24);
     std::set<std::string> explained;
     for (const auto& table : page.tables) {
       const std::string& path = table.first;

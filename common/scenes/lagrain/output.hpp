@@ -5,9 +5,11 @@
 ///
 ///     scene.toml       the scene with every default filled in; reads back to the same run
 ///     grains_N.csv     copies of the files of grains that it reads, if it reads any
+///     start.h5         a copy of the state that it starts from, if it starts from another run's
 ///     series.csv       energies, contacts, overlaps, who came and left, wall forces against time
 ///     frames.csv       number, step and time of each frame
 ///     frames/NNNN.csv  the grains; contacts/NNNN.csv beside it if the scene asks for contacts
+///     vtp/, frames.xyz the same for ParaView and OVITO, if the scene asks for these formats
 ///     summary.txt      what the run was and how far it can be trusted
 ///     checkpoint.h5    the state at the end, or as it was not long before a sudden one; and
 ///                      checkpoint_before.h5, the one before (checkpoint.hpp)
@@ -59,6 +61,17 @@ struct RecordOptions {
 /// @throws SimulationError as Run::step, after writing what was computed and last.csv
 template <int Dim>
 bool record(Run<Dim>& run, const RecordOptions& options);
+
+/// What recording a run will write.
+struct OutputEstimate {
+  double frames = 0;           ///< how many [-]
+  double bytes_per_frame = 0;  ///< in all formats
+  double bytes = 0;            ///< with series and checkpoints
+};
+
+/// Guesses, to a factor of 2, from the grains that are there now, as if they touched as in a bed.
+template <int Dim>
+OutputEstimate estimate_output(const Run<Dim>& run);
 
 /// The dimension of the run that a checkpoint is of.
 /// @throws SceneError if it holds no run

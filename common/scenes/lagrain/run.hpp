@@ -132,6 +132,8 @@ class Run {
   int id(int i) const { return ids().empty() ? i : ids()[static_cast<std::size_t>(i)]; }
   /// Who has come and left; null where the scene says nothing of that.
   const TrafficCounts* traffic() const;
+  /// What comes from the run that the scene starts from, in words; empty if nothing does.
+  const std::string& origin() const { return origin_; }
   /// As it runs: the time step is in seconds.
   const Scene<Dim>& scene() const { return scene_; }
   double time_step() const { return scene_.time_step.seconds; }     ///< [s]
@@ -172,6 +174,7 @@ class Run {
   std::unique_ptr<detail::Traffic<Dim>> traffic_;  // null where nobody comes or leaves
   std::vector<int> materials_;
   std::vector<int> groups_;
+  std::string origin_;
   ContactRules rules_;
   std::vector<PlaneFlow<Dim>> flows_;  // as they were looked at last
   bool drives_ = false;

@@ -154,6 +154,11 @@ struct GrainFile {
   bool driven = false;                ///< all of them keep velocity and spin
 };
 
+/// The state of another run, whose grains are there at time 0, with what their contacts remember.
+struct StartState {
+  std::filesystem::path run;  ///< its folder, or one of its checkpoints
+};
+
 /// A time step [s], or a fraction of the shortest contact time.
 struct TimeStep {
   double fraction_of_contact = 1.0 / 25;  ///< used if `seconds` is 0
@@ -178,11 +183,15 @@ struct MeasuredPlane {
   std::optional<Region<Dim>> region;  ///< only what passes in it counts; none: all
 };
 
+/// How frames are spelled in files.
+enum class OutputFormat { csv, vtp, xyz };
+
 /// What a run writes, and how often.
 struct OutputPlan {
-  double frames_every = 0;  ///< [s]; 0: first and last frame only
-  double series_every = 0;  ///< [s]; 0: a thousandth of the duration
-  bool contacts = false;    ///< contacts beside each frame
+  double frames_every = 0;                               ///< [s]; 0: first and last frame only
+  double series_every = 0;                               ///< [s]; 0: a thousandth of the duration
+  bool contacts = false;                                 ///< contacts beside each frame
+  std::vector<OutputFormat> formats{OutputFormat::csv};  ///< of the frames
 };
 
 /// Everything that a run needs to know. Same scene, same bits.
@@ -211,6 +220,7 @@ struct Scene {
   LawNumbers law;                             ///< the numbers of the law
   std::vector<PairLaw> pairs;                 ///< between materials
   std::vector<Material> materials;            ///< all that occur
+  std::optional<StartState> start;            ///< grains of another run
   std::vector<Fill<Dim>> fills;               ///< groups of grains
   std::vector<PlacedGrain<Dim>> grains;       ///< placed by hand
   std::vector<GrainFile<Dim>> grain_files;    ///< listed in files
