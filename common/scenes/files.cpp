@@ -27,13 +27,18 @@ std::string last_reason() { return errno != 0 ? std::strerror(errno) : "unknown 
 
 }  // namespace
 
+std::string why_unreadable(const fs::path& file) {
+  std::error_code failure;
+  if (fs::is_directory(file, failure)) return "is a folder, no file";
+  errno = 0;
+  if (std::ifstream(file, std::ios::binary)) return {};
+  return errno == ENOENT ? "does not exist" : "cannot be read: " + last_reason();
+}
+
 std::string read_file(const fs::path& file) {
-  std::error_code ignored;
-  if (fs::is_directory(file, ignored)) {
-    throw SceneError(file.string() + ": expected a file, got a folder");
-  }
+  const std::string why = why_unreadable(file);
+  if (!why.empty()) throw SceneError(file.string() + ": " + why);
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw SceneError(file.string() + ": cannot be read");
   std::ostringstream text;
   text << in.rdbuf();
   return std::move(text).str();

@@ -5,6 +5,7 @@
 #include "toml_table.hpp"
 
 #include <lagrain/files.hpp>
+#include <lagrain/words.hpp>
 
 #include <algorithm>
 #include <array>
@@ -24,16 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Text from a file as a message shows it: short, and without what a terminal would obey.
-std::string shown(std::string_view cell) {
-  constexpr std::size_t kLongest = 40;
-  if (cell.empty()) return "nothing";
-  std::string text = "\"";
-  for (const char c : cell.substr(0, kLongest)) {
-    text += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
-  }
-  return text + (cell.size() > kLongest ? "...\"" : "\"");
-}
+/// Text from a file as a message shows it.
+std::string shown_cell(std::string_view cell) { return cell.empty() ? "nothing" : shown(cell); }
 
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t");
@@ -147,7 +140,7 @@ class Reader {
       : scene_(scene),
         asked_(scene.grain_files[index]),
         key_(std::string(keys::kGrains.name) + "[" + std::to_string(index) + "]"),
-        name_(asked_.file.string()),
+        name_(shortened(asked_.file.string(), 200)),
         text_(read()),
         rows_(text_) {
     if constexpr (Dim == 2) {
@@ -171,26 +164,23 @@ class Reader {
 
  private:
   std::string read() const {
+    const auto refuse = [&](const std::string& why) {
+      throw scene_.error(key_ + "." + std::string(keys::kFile.name), "\"" + name_ + "\" " + why);
+    };
+    const std::string why = why_unreadable(asked_.file);
+    if (!why.empty()) refuse(why + "; a path is taken from the folder of the scene file");
     std::error_code failure;
-    if (fs::exists(asked_.file, failure) && !fs::is_regular_file(asked_.file, failure)) {
-      throw scene_.error(key_ + "." + std::string(keys::kFile.name),
-                         "\"" + name_ + "\" is no file; expected a file of grains (CSV)");
+    if (!fs::is_regular_file(asked_.file, failure)) {
+      refuse("is no file; expected a file of grains (CSV)");
     }
-    try {
-      return read_file(asked_.file);
-    } catch (const SceneError&) {
-      throw scene_.error(key_ + "." + std::string(keys::kFile.name),
-                         "\"" + name_ +
-                             "\" cannot be read; a path is taken from the folder of "
-                             "the scene file");
-    }
+    return read_file(asked_.file);
   }
 
   [[noreturn]] void fail(const std::string& message) const {
     throw SceneError(name_ + ":" + std::to_string(rows_.line()) + ": " + message);
   }
   [[noreturn]] void expected(const Column& column, const std::string& what) const {
-    fail(column.name + ": expected " + what + ", got " + shown(rows_.cells()[column.place]));
+    fail(column.name + ": expected " + what + ", got " + shown_cell(rows_.cells()[column.place]));
   }
 
   /// Which columns there may be, for messages.
@@ -210,7 +200,7 @@ class Reader {
       if (name != column.name) continue;
       if (column.is_there) fail("a second column \"" + column.name + "\"");
       if (!unit.empty() && unit != column.unit) {
-        fail("column " + shown(rows_.cells()[k]) + ": expected " + column.title());
+        fail("column " + shown_cell(rows_.cells()[k]) + ": expected " + column.title());
       }
       column.place = k;
       column.is_there = true;
@@ -307,7 +297,7 @@ class Reader {
       if (scene_.materials[m].name == cell) return *(last_ = with_density(static_cast<int>(m)));
       names.push_back(scene_.materials[m].name);
     }
-    fail("material: no material " + shown(cell) + suggestion(cell.substr(0, 40), names) +
+    fail("material: no material " + shown_cell(cell) + suggestion(cell.substr(0, 40), names) +
          "; expected one of the scene's [materials.NAME], or in " + key_ +
          " material = \"...\" for all grains of the file");
   }

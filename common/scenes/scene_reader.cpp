@@ -4,10 +4,12 @@
 
 #include "placing.hpp"
 #include "scene_keys.hpp"
+#include "settings.hpp"
 #include "stl.hpp"
 #include "toml_table.hpp"
 
 #include <lagrain/numbers.hpp>
+#include <lagrain/words.hpp>
 
 #include <charconv>
 #include <cmath>
@@ -19,7 +21,6 @@ namespace lagrain {
 namespace {
 
 using detail::Key;
-using detail::suggestion;
 using detail::TomlFile;
 using detail::TomlTable;
 namespace keys = detail::keys;
@@ -358,7 +359,7 @@ class Reader {
       if (scene_.materials[m].name == name) return static_cast<int>(m);
       names.push_back(scene_.materials[m].name);
     }
-    s.fail(key, "no material \"" + name + "\"" + suggestion(name, names));
+    s.fail(key, "no material " + shown(name) + suggestion(name, names));
   }
 
   void read_laws() {
@@ -391,7 +392,7 @@ class Reader {
     if (law.a > law.b) std::swap(law.a, law.b);
     for (const PairLaw& earlier : scene_.pairs) {
       if (earlier.a == law.a && earlier.b == law.b) {
-        s.fail(keys::kBetween, "a second time [\"" + names[0] + "\", \"" + names[1] + "\"]");
+        s.fail(keys::kBetween, "a second time [" + shown(names[0]) + ", " + shown(names[1]) + "]");
       }
     }
     law.touch = s.flag(keys::kTouch, law.touch);
@@ -502,8 +503,8 @@ class Reader {
     inlet.region = read_region(s);
     const double width = (inlet.region.high - inlet.region.low).minCoeff();
     if (width * (1 + 1e-12) < 2 * detail::largest(inlet.radius)) {
-      s.fail(keys::kRegion, "is " + shortest(width) + " m wide, too narrow for grains " +
-                                shortest(2 * detail::largest(inlet.radius)) + " m wide");
+      s.fail(keys::kRegion, "is " + rounded(width) + " m wide, too narrow for grains " +
+                                rounded(2 * detail::largest(inlet.radius)) + " m wide");
     }
     inlet.rate = s.number(keys::kRate);
     read_times(s, inlet);
@@ -757,7 +758,7 @@ class Reader {
       try {
         return Wall<3>::sheet(name, read_origin(s), detail::read_stl(file, scale));
       } catch (const std::invalid_argument& defect) {
-        s.fail(keys::kMesh, file.string() + ": " + defect.what());
+        s.fail(keys::kMesh, shortened(file.string(), 200) + ": " + defect.what());
       }
     }
   }
@@ -919,7 +920,7 @@ class Reader {
   std::string side_named(TomlTable& s, const std::string& side, const Key& key,
                          const std::vector<std::string>& sides) {
     if (std::find(sides.begin(), sides.end(), side) != sides.end()) return side;
-    s.fail(key, "no side \"" + side + "\"" + suggestion(side, sides) +
+    s.fail(key, "no side " + shown(side) + suggestion(side, sides) +
                     "; expected some of left, right, " + (Dim == 3 ? "front, back, " : "") +
                     "bottom, top");
   }
@@ -1025,7 +1026,7 @@ class Reader {
       for (std::size_t k = 0; k < names.size(); ++k) {
         const auto found = std::find(known.begin(), known.end(), names[k]);
         if (found == known.end()) {
-          s.fail(keys::kBetween, "no wall \"" + names[k] + "\"" + suggestion(names[k], known));
+          s.fail(keys::kBetween, "no wall " + shown(names[k]) + suggestion(names[k], known));
         }
         between[k / 2][k % 2] = static_cast<int>(found - known.begin());
       }
@@ -1162,10 +1163,16 @@ int dimension_of(const toml::table& root, const std::string& name) {
   return static_cast<int>(value->get());
 }
 
+/// A scene's table, with settings in place of what stands in it.
+toml::table table_of(std::string_view text, const std::string& name, const Settings& settings) {
+  toml::table root = detail::parse_toml(text, name);
+  for (const std::string& setting : settings) detail::apply_setting(root, setting);
+  return root;
+}
+
 template <int Dim>
-Scene<Dim> parse(std::string_view text, const std::string& name,
+Scene<Dim> parse(const toml::table& root, const std::string& name,
                  const std::filesystem::path& folder) {
-  const toml::table root = detail::parse_toml(text, name);
   if (const int found = dimension_of(root, name); found != Dim) {
     const std::string key(keys::kDimension.name);
     TomlFile{name, nullptr}.fail(
@@ -1176,23 +1183,40 @@ Scene<Dim> parse(std::string_view text, const std::string& name,
 
 }  // namespace
 
-int scene_dimension(const std::filesystem::path& file) {
-  return dimension_of(detail::parse_toml(read_file(file), called(file)), called(file));
+int scene_dimension(const std::filesystem::path& file) { return scene_dimension(file, {}); }
+
+int scene_dimension(const std::filesystem::path& file, const Settings& settings) {
+  return dimension_of(table_of(read_file(file), called(file), settings), called(file));
 }
 
 template <int Dim>
 Scene<Dim> parse_scene(std::string_view text, const std::string& name) {
-  return parse<Dim>(text, name, {});
+  return parse_scene<Dim>(text, name, {});
+}
+
+template <int Dim>
+Scene<Dim> parse_scene(std::string_view text, const std::string& name, const Settings& settings) {
+  return parse<Dim>(table_of(text, name, settings), name, {});
 }
 
 template <int Dim>
 Scene<Dim> read_scene(const std::filesystem::path& file) {
-  return parse<Dim>(read_file(file), called(file), file.parent_path());
+  return read_scene<Dim>(file, {});
+}
+
+template <int Dim>
+Scene<Dim> read_scene(const std::filesystem::path& file, const Settings& settings) {
+  return parse<Dim>(table_of(read_file(file), called(file), settings), called(file),
+                    file.parent_path());
 }
 
 template Scene<2> read_scene<2>(const std::filesystem::path&);
 template Scene<3> read_scene<3>(const std::filesystem::path&);
+template Scene<2> read_scene<2>(const std::filesystem::path&, const Settings&);
+template Scene<3> read_scene<3>(const std::filesystem::path&, const Settings&);
 template Scene<2> parse_scene<2>(std::string_view, const std::string&);
 template Scene<3> parse_scene<3>(std::string_view, const std::string&);
+template Scene<2> parse_scene<2>(std::string_view, const std::string&, const Settings&);
+template Scene<3> parse_scene<3>(std::string_view, const std::string&, const Settings&);
 
 }  // namespace lagrain

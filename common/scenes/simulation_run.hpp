@@ -11,6 +11,7 @@
 #include <lagrain/numbers.hpp>
 #include <lagrain/run.hpp>
 #include <lagrain/simulation.hpp>
+#include <lagrain/words.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -145,7 +146,7 @@ void expect_slow_drag(const Scene<Dim>& scene, const std::vector<Grain<Dim>>& gr
   if (scene.time_step.seconds * fastest <= kMostTaken) return;
   throw scene.error("time_step", rounded(scene.time_step.seconds) +
                                      " s is too large for the drag, which allows at most " +
-                                     shortest(kMostTaken / fastest) + " s; or give less drag");
+                                     rounded_down(kMostTaken / fastest) + " s; or give less drag");
 }
 
 /// The last part of make_run: law and grains as types.
@@ -178,7 +179,7 @@ std::unique_ptr<Run<Dim>> make_run_of(const Scene<Dim>& scene, Placement<Dim> pl
     throw scene.error("time_step",
                       rounded(resolved.time_step.seconds) +
                           " s is too large: the stiffest contact lasts " + rounded(scales.contact) +
-                          " s and allows at most " + shortest(scales.safe_step) + " s (\"" +
+                          " s and allows at most " + rounded_down(scales.safe_step) + " s (\"" +
                           rounded(0.999 * scales.safe_step / scales.contact) + " contact\")");
   }
 

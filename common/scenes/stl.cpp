@@ -35,8 +35,10 @@ bool read(const std::filesystem::path& file, Points& points, Facets& facets) {
 }  // namespace
 
 std::vector<WallPiece<3>> read_stl(const std::filesystem::path& file, double scale) {
+  const std::string why = why_unreadable(file);
+  if (!why.empty()) throw std::invalid_argument(why);
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) throw std::invalid_argument("no such file");
+  if (!std::filesystem::is_regular_file(file, ignored)) throw std::invalid_argument("is no file");
   Points points;
   Facets facets;
   if (!read(file, points, facets)) {

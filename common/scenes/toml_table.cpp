@@ -2,33 +2,18 @@
 #include "toml_table.hpp"
 
 #include <lagrain/numbers.hpp>
+#include <lagrain/words.hpp>
 
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 
 namespace lagrain::detail {
 namespace {
 
-/// Letters to insert, delete or replace to turn one word into the other.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
-}
-
 /// What stands in the file, as a message shows it.
 std::string shown(const toml::node& node) {
-  if (const auto* s = node.as_string()) return "\"" + s->get() + "\"";
+  constexpr std::size_t kLongest = 60;  // letters of a list
+  if (const auto* s = node.as_string()) return lagrain::shown(s->get());
   if (const auto* i = node.as_integer()) return std::to_string(i->get());
   if (const auto* f = node.as_floating_point()) return shortest(f->get());
   if (const auto* b = node.as_boolean()) return b->get() ? "true" : "false";
@@ -36,6 +21,7 @@ std::string shown(const toml::node& node) {
     std::string text = "[";
     for (const toml::node& item : *a) {
       if (text.size() > 1) text += ", ";
+      if (text.size() > kLongest) return text + "...]";
       text += shown(item);
     }
     return text += ']';
@@ -65,6 +51,35 @@ std::string described(const Key& key) {
   return {};
 }
 
+/// The word that was meant, as a hint: one that is spelled much like it, or one of ours for what
+/// others call otherwise.
+std::string hint_for(std::string_view word, const std::vector<std::string>& words) {
+  struct Synonym {
+    std::string_view theirs, ours;
+  };
+  constexpr std::array kSynonyms{Synonym{"coulomb", "elastic"},
+                                 Synonym{"mindlin", "elastic"},
+                                 Synonym{"hooke", "linear"},
+                                 Synonym{"spring", "linear"},
+                                 Synonym{"frictionless", "none"},
+                                 Synonym{"leapfrog", "velocity Verlet"},
+                                 Synonym{"grid", "linked cells"},
+                                 Synonym{"grid", "lattice"},
+                                 Synonym{"brute force", "all pairs"},
+                                 Synonym{"delaunay", "triangulation"},
+                                 Synonym{"regular", "lattice"},
+                                 Synonym{"sinus", "shake"},
+                                 Synonym{"sine", "shake"},
+                                 Synonym{"volume", "mass"}};
+  for (const Synonym& synonym : kSynonyms) {
+    const std::string ours(synonym.ours);
+    if (nearest_word(word, {std::string(synonym.theirs)}).empty()) continue;
+    if (std::find(words.begin(), words.end(), ours) == words.end()) continue;
+    return suggestion(ours, {ours});
+  }
+  return suggestion(word, words);
+}
+
 bool accepts(Range range, double value) {
   switch (range) {
     case Range::any:
@@ -79,25 +94,64 @@ bool accepts(Range range, double value) {
   return false;
 }
 
+/// What the parser says, in words that help whoever wrote the file.
+std::string in_words(std::string_view reason) {
+  constexpr std::string_view kPrefix = "Error while parsing ";
+  std::string scope;
+  if (const auto colon = reason.find(": "); reason.starts_with(kPrefix) && colon < reason.size()) {
+    scope = reason.substr(kPrefix.size(), colon - kPrefix.size());
+    reason.remove_prefix(colon + 2);
+  }
+  constexpr std::string_view kAgain = "cannot redefine existing ";
+  if (reason.starts_with(kAgain)) {
+    const auto first = std::min(reason.find('\''), reason.size() - 1);
+    const auto last = reason.find('\'', first + 1);
+    const std::string key(reason.substr(first + 1, last - first - 1));
+    const std::string twice = lagrain::shown(key) + " stands here a second time";
+    if (reason.find(" as ", last) < reason.size()) {
+      return twice + ", as something else: a list of tables is headed [[" + shortened(key) +
+             "]] each time, a single table [" + shortened(key) + "]";
+    }
+    const bool is_table = reason.substr(kAgain.size()).starts_with("table");
+    return twice + (is_table ? "; a table has one heading" : "") +
+           " (or does a heading such as [law] miss above this line?)";
+  }
+  if (reason.find("encountered end-of-file") < reason.size()) {
+    return "the file ends within a " + scope;
+  }
+  if (!reason.empty() && reason.back() == '.') reason.remove_suffix(1);
+  constexpr std::size_t kLongest = 200;
+  return (scope.empty() || scope == "root table" ? "" : "in a " + scope + ": ") +
+         shortened(reason, kLongest);
+}
+
+/// A name of too many parts would make tables within tables until the stack ends.
+void expect_shallow(std::string_view text, const std::string& name) {
+  constexpr int kMostParts = 1000;
+  int parts = 1;
+  int line = 1;
+  for (const char c : text) {
+    line += c == '\n' ? 1 : 0;
+    parts = c == '.' ? parts + 1 : std::string_view(",[]{}=#\n").find(c) < 9 ? 1 : parts;
+    if (parts <= kMostParts) continue;
+    throw SceneError(name + ":" + std::to_string(line) + ": not valid TOML: a key of more than " +
+                     std::to_string(kMostParts) + " parts");
+  }
+}
+
 }  // namespace
 
-std::string suggestion(std::string_view word, const std::vector<std::string>& known) {
-  std::size_t best = std::max<std::size_t>(2, word.size() / 2) + 1;
-  std::string_view nearest;
-  for (const std::string& candidate : known) {
-    const std::size_t distance = edit_distance(word, candidate);
-    if (distance < best) {
-      best = distance;
-      nearest = candidate;
-    }
-  }
-  return nearest.empty() ? "" : " (did you mean \"" + std::string(nearest) + "\"?)";
+std::string TomlFile::place_of(const toml::source_region& at) const {
+  return is_own(at) ? name + ":" + std::to_string(at.begin.line) : *at.path;
+}
+
+void TomlFile::remember(const std::string& path, const toml::node& node) const {
+  if (is_own(node.source())) (*lines)[path] = static_cast<int>(node.source().begin.line);
 }
 
 void TomlFile::fail(const toml::node& node, const std::string& path,
                     const std::string& message) const {
-  throw SceneError(name + ":" + std::to_string(node.source().begin.line) + ": " + path + ": " +
-                   message);
+  throw SceneError(place_of(node.source()) + ": " + shortened(path, 100) + ": " + message);
 }
 
 void TomlFile::expected(const toml::node& node, const std::string& path,
@@ -106,13 +160,13 @@ void TomlFile::expected(const toml::node& node, const std::string& path,
 }
 
 toml::table parse_toml(std::string_view text, const std::string& name) {
+  expect_shallow(text, name);
   try {
     return toml::parse(text, std::string_view(name));
   } catch (const toml::parse_error& error) {
-    std::string reason(error.description());
-    if (!reason.empty() && reason.back() == '.') reason.pop_back();
     throw SceneError(name + ":" + std::to_string(error.source().begin.line) + ":" +
-                     std::to_string(error.source().begin.column) + ": not valid TOML: " + reason);
+                     std::to_string(error.source().begin.column) +
+                     ": not valid TOML: " + in_words(error.description()));
   }
 }
 
@@ -121,7 +175,7 @@ toml::table parse_toml(std::string_view text, const std::string& name) {
 const toml::node* TomlTable::find(const Key& key) {
   known_.emplace_back(key.name);
   const toml::node* node = table_.get(key.name);
-  if (node != nullptr) (*file_.lines)[path(key)] = static_cast<int>(node->source().begin.line);
+  if (node != nullptr) file_.remember(path(key), *node);
   return node;
 }
 
@@ -134,11 +188,13 @@ void TomlTable::missing(const Key& key, const std::string& what) {
   // A misspelt key explains the missing one better than its absence does.
   std::string hint;
   for (const auto& [other, value] : table_) {
-    if (edit_distance(other.str(), key.name) <= 2 &&
-        std::find(known_.begin(), known_.end(), other.str()) == known_.end()) {
-      hint = " (is \"" + std::string(other.str()) + "\" on line " +
-             std::to_string(other.source().begin.line) + " meant?)";
-    }
+    if (std::find(known_.begin(), known_.end(), other.str()) != known_.end()) continue;
+    if (nearest_word(key.name, {std::string(other.str())}).empty()) continue;
+    const toml::source_region& at = value.source();
+    hint = " (is " + lagrain::shown(other.str()) +
+           (file_.is_own(at) ? " on line " + std::to_string(at.begin.line)
+                             : " of " + file_.place_of(at)) +
+           " meant?)";
   }
   file_.fail(table_, path(key), "missing; expected " + what + hint);
 }
@@ -155,14 +211,18 @@ void TomlTable::expected(const Key& key, const std::string& what) {
 void TomlTable::finish() const {
   for (const auto& [key, node] : table_) {
     if (std::find(known_.begin(), known_.end(), key.str()) != known_.end()) continue;
-    throw SceneError(file_.name + ":" + std::to_string(key.source().begin.line) + ": " +
-                     path(key.str()) + ": unknown key" + suggestion(key.str(), known_));
+    throw SceneError(file_.place_of(key.source().path ? key.source() : node.source()) + ": " +
+                     shortened(path(key.str()), 100) + ": unknown key" +
+                     suggestion(key.str(), known_));
   }
 }
 
 std::vector<std::string> TomlTable::names() const {
   std::vector<std::pair<toml::source_position, std::string>> found;
-  for (const auto& [key, node] : table_) found.emplace_back(key.source().begin, key.str());
+  for (const auto& [key, node] : table_) {
+    expect_name(node, path(key.str()), key.str());
+    found.emplace_back(node.source().begin, key.str());
+  }
   std::sort(found.begin(), found.end());
   std::vector<std::string> list;
   for (auto& [at, name] : found) list.push_back(std::move(name));
@@ -180,6 +240,12 @@ double TomlTable::quantity(const toml::node& node, const Key& key) const {
     } catch (const std::invalid_argument& reason) {
       file_.fail(node, path(key),
                  "expected " + described(key) + ", got " + shown(node) + ": " + reason.what());
+    }
+    if (q.unit == Unit{} && key.measure.unit != Unit{}) {
+      file_.fail(node, path(key),
+                 "expected " + described(key) + ", got " + shown(node) +
+                     ", which has no unit (a number without quotes is in " +
+                     to_string(key.measure.unit) + ")");
     }
     if (q.unit != key.measure.unit) file_.expected(node, path(key), described(key));
     value = q.value;
@@ -247,7 +313,22 @@ bool TomlTable::flag(const Key& key, bool fallback) {
 std::string TomlTable::text(const Key& key) {
   const toml::node& node = require(key, "text");
   if (!node.is_string()) expected(key, "text");
+  if (key.name == keys::kName.name) expect_name(node, path(key), node.as_string()->get());
   return node.as_string()->get();
+}
+
+void TomlTable::expect_name(const toml::node& node, const std::string& path,
+                            std::string_view name) const {
+  constexpr std::size_t kLongest = 100;  // bytes: a name heads columns and stands in messages
+  if (name.size() > kLongest) {
+    file_.fail(node, path,
+               "expected a name of at most " + std::to_string(kLongest) + " letters, got " +
+                   std::to_string(name.size()));
+  }
+  if (readable(name) != name) {
+    file_.fail(node, path,
+               "expected a name without control characters, got " + lagrain::shown(name));
+  }
 }
 
 std::vector<std::string> TomlTable::texts(const Key& key, const std::string& what,
@@ -271,6 +352,9 @@ std::size_t TomlTable::word(const Key& key, const std::vector<std::string_view>&
   if (const auto* s = require(key, all).as_string()) {
     const auto found = std::find(words.begin(), words.end(), s->get());
     if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
+    file_.fail(*find(key), path(key),
+               "expected " + all + ", got " + lagrain::shown(s->get()) +
+                   hint_for(s->get(), {words.begin(), words.end()}));
   }
   expected(key, all);
 }
@@ -296,7 +380,7 @@ TomlTable TomlTable::table_at(const Key& key, std::size_t index) const {
   const toml::node& item = *table_.get(key.name)->as_array()->get(index);
   const std::string here = path(key) + "[" + std::to_string(index) + "]";
   if (!item.is_table()) file_.expected(item, here, "a table");
-  (*file_.lines)[here] = static_cast<int>(item.source().begin.line);
+  file_.remember(here, item);
   return {file_, *item.as_table(), here};
 }
 

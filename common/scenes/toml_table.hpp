@@ -27,14 +27,17 @@
 
 namespace lagrain::detail {
 
-/// ` (did you mean "x"?)` for the known word most like `word`, or nothing if none is like it.
-std::string suggestion(std::string_view word, const std::vector<std::string>& known);
-
 /// The file that is being read.
 struct TomlFile {
   std::string name;
   std::map<std::string, int>* lines;  ///< path of a key -> its line
 
+  /// Whether something stands in the file, and not in a setting beside it (settings.hpp).
+  bool is_own(const toml::source_region& at) const { return !at.path || *at.path == name; }
+  /// "file:line", or the setting.
+  std::string place_of(const toml::source_region& at) const;
+  /// Keeps the line of a key for messages that come later.
+  void remember(const std::string& path, const toml::node& node) const;
   /// @throws SceneError "file:line: path: message"
   [[noreturn]] void fail(const toml::node& node, const std::string& path,
                          const std::string& message) const;
@@ -151,6 +154,8 @@ class TomlTable {
   static std::string components_of(std::size_t count) {
     return count == 1 ? "[x]" : count == 2 ? "[x, y]" : "[x, y, z]";
   }
+  /// @throws SceneError if it would harm what it heads or a message that it stands in
+  void expect_name(const toml::node& node, const std::string& path, std::string_view name) const;
   const toml::node* find(const Key& key);
   const toml::node& require(const Key& key, const std::string& what);
   double quantity(const toml::node& node, const Key& key) const;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <lagrain/units.hpp>
+#include <lagrain/words.hpp>
 
 #include <array>
 #include <charconv>
@@ -74,7 +75,7 @@ NamedUnit look_up(std::string_view name) {
       }
     }
   }
-  throw std::invalid_argument("unknown unit \"" + std::string(name) + "\"");
+  throw std::invalid_argument("unknown unit " + shown(name));
 }
 
 /// The double nearest to the decimal number `digits` times 10^power: "0.7" and -2 give 0.007, which
@@ -117,7 +118,7 @@ Quantity parse_quantity(std::string_view text) {
       const auto [stop, bad] =
           std::from_chars(raised.data(), raised.data() + raised.size(), exponent);
       if (bad != std::errc{} || stop != raised.data() + raised.size() || std::abs(exponent) > 9) {
-        throw std::invalid_argument("unknown power \"" + std::string(part) + "\"");
+        throw std::invalid_argument("unknown power " + shown(part));
       }
       part = part.substr(0, hat);
     }

@@ -250,7 +250,7 @@ TEST_SUITE("grain files") {
     };
     CHECK(
         refusal("bad.csv") ==
-        "s.toml:21: grains[0].file: \"bad.csv\" cannot be read; a path is taken from the folder of "
+        "s.toml:21: grains[0].file: \"bad.csv\" does not exist; a path is taken from the folder of "
         "the scene file");
     CHECK(refusal("/dev/zero") ==
           "s.toml:21: grains[0].file: \"/dev/zero\" is no file; expected a "

@@ -172,10 +172,10 @@ TEST_SUITE("scene") {
   TEST_CASE("what is not TOML is an error with line and column") {
     CHECK(message_of("dimension = ").substr(0, 28) == "s.toml:1:13: not valid TOML:");
     CHECK(message_of(kHeap + "[law]\n").substr(0, 10) == "s.toml:43:");
-    CHECK_THROWS_WITH_AS(read_scene<2>("no/such/file.toml"), "no/such/file.toml: cannot be read",
+    CHECK_THROWS_WITH_AS(read_scene<2>("no/such/file.toml"), "no/such/file.toml: does not exist",
                          SceneError);
     const std::string here = std::filesystem::temp_directory_path().string();
-    CHECK_THROWS_WITH_AS(read_scene<2>(here), (here + ": expected a file, got a folder").c_str(),
+    CHECK_THROWS_WITH_AS(read_scene<2>(here), (here + ": is a folder, no file").c_str(),
                          SceneError);
   }
 

@@ -11,6 +11,9 @@
 
 namespace lagrain {
 
+/// Why a file cannot be read, as the end of a sentence: "does not exist"; empty if it can.
+std::string why_unreadable(const std::filesystem::path& file);
+
 /// All of a file.
 /// @throws SceneError if it is a folder or cannot be read
 std::string read_file(const std::filesystem::path& file);
