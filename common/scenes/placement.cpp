@@ -43,77 +43,122 @@ constexpr double kDensest = Dim == 2 ? 0.9068996821171089 : 0.7404804896930610;
 template <int Dim>
 constexpr double kDensestRandom = Dim == 2 ? 0.84 : 0.64;
 
-/// Finds the grains near a place. Each grain is listed in every cell that its bounding box meets,
-/// so that any mixture of sizes works.
+/// Finds the grains near a place. Grains of like size share a grid of cells that are one to two of
+/// their diameters wide, and each is listed in every cell that its bounding box meets, so that any
+/// mixture of sizes works. It is a hierarchical grid (Ericson, Real-Time Collision Detection, 2005,
+/// section 7.2).
 template <int Dim>
 class Occupied {
  public:
-  explicit Occupied(double cell) : cell_(cell) {}
+  /// @param usual  radii of which there may be many, and none larger of the same kind [m]
+  explicit Occupied(const std::vector<double>& usual) {
+    for (const double r : usual) grid_for(r);
+  }
 
   void add(int grain, const Vec<Dim>& x, double r) {
-    visit_cells(x, r, [&](std::uint64_t key) {
-      cells_[key].push_back(grain);
+    Grid& grid = grid_for(r);
+    grid.grains.push_back(grain);
+    visit_cells(Cells(grid, x, r), [&](std::uint64_t key) {
+      grid.cells[key].push_back(grain);
       return true;
     });
   }
-  /// Visits grains near the ball, some more than once, until f returns false.
+  /// Visits all grains that touch the ball and some more, some more than once, until f fails.
   template <class F>
   void for_each_near(const Vec<Dim>& x, double r, F&& f) const {
-    visit_cells(x, r, [&](std::uint64_t key) {
-      const auto found = cells_.find(key);
-      if (found == cells_.end()) return true;
-      return std::all_of(found->second.begin(), found->second.end(), f);
-    });
+    for (const Grid& grid : grids_) {
+      const Cells cells(grid, x, r);
+      const auto look_into = [&](std::uint64_t key) {
+        const auto found = grid.cells.find(key);
+        return found == grid.cells.end() ||
+               std::all_of(found->second.begin(), found->second.end(), f);
+      };
+      // A large ball among few small grains: to look at each is less than to look into each cell.
+      const bool more = cells.count() > static_cast<double>(grid.grains.size())
+                            ? std::all_of(grid.grains.begin(), grid.grains.end(), f)
+                            : visit_cells(cells, look_into);
+      if (!more) return;
+    }
   }
 
  private:
-  std::int64_t cell_of(double x) const {
-    constexpr double kFar = 9e18;  // beyond it the numbers of cells end, and all is one cell
-    return static_cast<std::int64_t>(std::clamp(std::floor(x / cell_), -kFar, kFar));
+  /// Grains with radii from a quarter to half of a cell.
+  struct Grid {
+    double cell;              // its width [m]
+    std::vector<int> grains;  // all
+    // A key shared by accident only costs.
+    std::unordered_map<std::uint64_t, std::vector<int>> cells;
+  };
+
+  /// The cells of a grid that the bounding box of a ball meets.
+  struct Cells {
+    std::array<std::int64_t, Dim> low, high;
+
+    Cells(const Grid& grid, const Vec<Dim>& x, double r) {
+      constexpr double kFar = 9e18;  // beyond it the numbers of cells end, and all is one cell
+      const auto cell_of = [&](double place) {
+        return static_cast<std::int64_t>(std::clamp(std::floor(place / grid.cell), -kFar, kFar));
+      };
+      for (std::size_t d = 0; d < Dim; ++d) {
+        const auto k = static_cast<Eigen::Index>(d);
+        low[d] = cell_of(x[k] - r);
+        high[d] = cell_of(x[k] + r);
+      }
+    }
+    double count() const {
+      double count = 1;
+      for (std::size_t d = 0; d < Dim; ++d) {
+        count *= static_cast<double>(high[d]) - static_cast<double>(low[d]) + 1;
+      }
+      return count;
+    }
+  };
+
+  Grid& grid_for(double r) {
+    for (Grid& grid : grids_) {
+      if (r <= grid.cell / 2 && r > grid.cell / 4) return grid;
+    }
+    return grids_.emplace_back(Grid{2 * r, {}, {}});
   }
 
+  /// Visits the keys of cells until f returns false.
+  /// @return whether it never did
   template <class F>
-  void visit_cells(const Vec<Dim>& x, double r, F&& f) const {
-    std::array<std::int64_t, Dim> low;
-    std::array<std::int64_t, Dim> at;
-    std::array<std::int64_t, Dim> high;
-    for (std::size_t d = 0; d < Dim; ++d) {
-      const auto k = static_cast<Eigen::Index>(d);
-      low[d] = cell_of(x[k] - r);
-      high[d] = cell_of(x[k] + r);
-    }
-    at = low;
+  static bool visit_cells(const Cells& cells, F&& f) {
+    std::array<std::int64_t, Dim> at = cells.low;
     for (bool more = true; more;) {
       std::uint64_t key = 0;
       for (std::size_t d = 0; d < Dim; ++d) {
         key = key * 0x9E3779B97F4A7C15ULL + static_cast<std::uint64_t>(at[d]);
       }
-      if (!f(key)) return;
+      if (!f(key)) return false;
       more = false;
       for (std::size_t d = 0; d < Dim && !more; ++d) {
-        more = at[d] < high[d];
-        at[d] = more ? at[d] + 1 : low[d];
+        more = at[d] < cells.high[d];
+        at[d] = more ? at[d] + 1 : cells.low[d];
       }
     }
+    return true;
   }
 
-  double cell_;
-  std::unordered_map<std::uint64_t, std::vector<int>>
-      cells_;  // a key shared by accident only costs
+  std::vector<Grid> grids_;
 };
 
 template <int Dim>
 class Placer {
  public:
-  explicit Placer(const Scene<Dim>& scene)
+  Placer(const Scene<Dim>& scene, const PlacementWatch& watch)
       : scene_(scene),
+        watch_(watch),
         apart_(scene.apart()),
         start_(start_of(scene)),
         walls_(start_.walls),
         listed_(read_files(scene)),
-        cell_(cell_size(scene, start_.grains, listed_)),
-        occupied_(cell_) {
+        occupied_(usual_radii(scene)) {
     for (Wall<Dim>& wall : walls_) wall.advance(0, 0);
+    asked_ = static_cast<std::int64_t>(start_.grains.size() + scene.grains.size());
+    for (const auto& file : listed_) asked_ += static_cast<std::int64_t>(file.grains.size());
+    for (const Fill<Dim>& f : scene.fills) asked_ += f.count.value_or(0);
   }
 
   Placement<Dim> place() {
@@ -144,33 +189,15 @@ class Placer {
     return files;
   }
 
-  /// Wide enough for most grains to lie in a few cells, and no grain in too many.
-  static double cell_size(const Scene<Dim>& scene, const std::vector<PlacedGrain<Dim>>& start,
-                          const std::vector<detail::ListedGrains<Dim>>& listed) {
-    double small = std::numeric_limits<double>::infinity();
-    double large = 0;
-    const auto consider = [&](double r) {
-      small = std::min(small, r);
-      large = std::max(large, r);
-    };
-    for (const auto& fill : scene.fills) consider(largest(fill.radius));
-    const auto consider_mean = [&](const std::vector<PlacedGrain<Dim>>& grains) {
-      if (grains.empty()) return;
-      double sum = 0;
-      for (const auto& grain : grains) {
-        sum += grain.radius;
-        large = std::max(large, grain.radius);
-      }
-      consider(sum / static_cast<double>(grains.size()));
-    };
-    consider_mean(start);
-    for (const auto& file : listed) consider_mean(file.grains);
-    const bool alone = scene.fills.empty() && listed.empty() && start.empty();
-    for (const auto& grain : scene.grains) {
-      large = std::max(large, grain.radius);
-      if (alone) small = std::min(small, grain.radius);
-    }
-    return std::max(2 * small, large / 50);
+  static std::vector<double> usual_radii(const Scene<Dim>& scene) {
+    std::vector<double> radii;
+    for (const Fill<Dim>& f : scene.fills) radii.push_back(largest(f.radius));
+    return radii;
+  }
+
+  /// Lets whoever waits look, and stop.
+  void look() const {
+    if (watch_) watch_(static_cast<std::int64_t>(placed_.grains.size()), asked_);
   }
 
   /// A refusal of a grain that no fill has placed: by the scene's key, or by file and line.
@@ -197,9 +224,8 @@ class Placer {
     const std::size_t index = placed_.grains.size();
     const double limit = scene_.largest_initial_overlap;
     const auto overlaps = [&](const std::string& other, double overlap) {
-      return refusal(index, "overlaps " + other + " by " +
-                                shortest(std::round(1000 * overlap) / 10) +
-                                " % of the smaller radius (limit " + shortest(100 * limit) +
+      return refusal(index, "overlaps " + other + " by " + rounded(100 * overlap) +
+                                " % of the smaller radius (limit " + rounded(100 * limit) +
                                 " %); largest_initial_overlap allows more");
     };
     for (const Wall<Dim>& wall : walls_) {
@@ -210,15 +236,21 @@ class Placer {
       const double overlap = (p.radius - distance) / p.radius;
       if (overlap > limit) throw overlaps("wall \"" + wall.name + "\"", overlap);
     }
+    constexpr int kNone = std::numeric_limits<int>::max();
+    int first = kNone;  // of those that it overlaps
+    double first_overlap = 0;
     occupied_.for_each_near(p.position, p.radius, [&](int j) {
       const Grain<Dim>& other = placed_.grains[static_cast<std::size_t>(j)];
       const double overlap = (p.radius + other.radius - (p.position - other.position).norm()) /
                              std::min(p.radius, other.radius);
-      if (overlap > limit && !(p.held() && other.held()) && !apart(p.material, other.material)) {
-        throw overlaps(name_of(static_cast<std::size_t>(j)), overlap);
+      if (j < first && overlap > limit && !(p.held() && other.held()) &&
+          !apart(p.material, other.material)) {
+        first = j;
+        first_overlap = overlap;
       }
       return true;
     });
+    if (first != kNone) throw overlaps(name_of(static_cast<std::size_t>(first)), first_overlap);
     add(grain_like(p), -1);
   }
 
@@ -262,6 +294,7 @@ class Placer {
     occupied_.add(static_cast<int>(placed_.grains.size()), grain.position, grain.radius);
     placed_.grains.push_back(grain);
     placed_.group.push_back(group);
+    look();
   }
 
   bool free(const Vec<Dim>& x, double r) const {
@@ -346,6 +379,7 @@ class Placer {
       int overlapping = 0;  // a place behind a wall is no place
       for (int attempt = 0; attempt < kTries && !found; ++attempt) {
         if (full && overlapping == kTriesWhenFull) break;
+        if (attempt % 100 == 99) look();
         Vec<Dim> x;
         for (int d = 0; d < Dim; ++d)
           x[d] = random.uniform(f.region.low[d] + r, f.region.high[d] - r);
@@ -445,7 +479,7 @@ class Placer {
       walls.push_back(Wall<Dim>::half_space("low", f.region.low, Vec<Dim>::Unit(d)));
       walls.push_back(Wall<Dim>::half_space("high", f.region.high, -Vec<Dim>::Unit(d)));
     }
-    const double left = detail::push_apart(grains, std::move(walls), kPushes);
+    const double left = detail::push_apart(grains, std::move(walls), kPushes, [&] { look(); });
     if (left > 0) {
       fail(static_cast<std::size_t>(group),
            asked + "; after " + std::to_string(kPushes) + " pushes grains still overlap by " +
@@ -456,18 +490,19 @@ class Placer {
     for (std::size_t k = 0; k < chosen.size(); ++k) {
       placed_.grains[chosen[k]].position = grains[k].position;
     }
-    occupied_ = Occupied<Dim>(cell_);
+    occupied_ = Occupied<Dim>(usual_radii(scene_));
     for (std::size_t i = 0; i < placed_.grains.size(); ++i) {
       occupied_.add(static_cast<int>(i), placed_.grains[i].position, placed_.grains[i].radius);
     }
   }
 
   const Scene<Dim>& scene_;
+  const PlacementWatch& watch_;
+  std::int64_t asked_ = 0;  // grains, as far as the scene says how many
   MaterialsApart apart_;
   detail::Start<Dim> start_;
   std::vector<Wall<Dim>> walls_;  // where the run begins: a path may begin elsewhere
   std::vector<detail::ListedGrains<Dim>> listed_;  // of each file
-  double cell_;                                    // [m]
   Occupied<Dim> occupied_;
   Placement<Dim> placed_;
 };
@@ -476,10 +511,17 @@ class Placer {
 
 template <int Dim>
 Placement<Dim> place_grains(const Scene<Dim>& scene) {
-  return Placer<Dim>(scene).place();
+  return place_grains(scene, PlacementWatch{});
+}
+
+template <int Dim>
+Placement<Dim> place_grains(const Scene<Dim>& scene, const PlacementWatch& watch) {
+  return Placer<Dim>(scene, watch).place();
 }
 
 template Placement<2> place_grains<2>(const Scene<2>&);
 template Placement<3> place_grains<3>(const Scene<3>&);
+template Placement<2> place_grains<2>(const Scene<2>&, const PlacementWatch&);
+template Placement<3> place_grains<3>(const Scene<3>&, const PlacementWatch&);
 
 }  // namespace lagrain

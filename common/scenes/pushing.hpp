@@ -38,9 +38,11 @@ struct Syrup {
 ///
 /// @param grains velocities are left alone, masses too
 /// @param most   steps after which it gives up
+/// @param look   called every few steps; what it throws ends it
 /// @return the largest overlap left, of the smaller radius; 0 if nothing overlaps [-]
-template <int Dim>
-double push_apart(std::vector<Grain<Dim>>& grains, std::vector<Wall<Dim>> walls, int most) {
+template <int Dim, class Look>
+double push_apart(std::vector<Grain<Dim>>& grains, std::vector<Wall<Dim>> walls, int most,
+                  Look&& look) {
   constexpr double kSurplus = 0.005;  // of a radius
   constexpr int kLookEvery = 10;      // steps
   double smallest = std::numeric_limits<double>::infinity();
@@ -86,6 +88,7 @@ double push_apart(std::vector<Grain<Dim>>& grains, std::vector<Wall<Dim>> walls,
   double left = largest_overlap();
   while (left > 0 && sim.steps() < most) {
     sim.step(kLookEvery);
+    look();
     left = largest_overlap();
   }
   for (std::size_t i = 0; i < grains.size(); ++i) {

@@ -11,10 +11,12 @@
 #include <lagrain/overlap_estimate.hpp>
 #include <lagrain/triangulation2.hpp>
 #include <lagrain/triangulation3.hpp>
+#include <lagrain/words.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <thread>
 #include <variant>
@@ -176,9 +178,12 @@ void Run<Dim>::check_contacts() {
   audit_.check_walls(positions(), radii(), walls(), near_wall_pairs(), rules_);
 }
 
+namespace {
+
 template <int Dim>
-std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, AnyNeighbourhood<Dim> neighbourhood) {
-  Placement<Dim> placement = place_grains(scene);
+std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, AnyNeighbourhood<Dim> neighbourhood,
+                                   const PlacementWatch& watch) {
+  Placement<Dim> placement = place_grains(scene, watch);
   detail::expect_in_domain(scene, placement);
   switch (scene.friction) {
 #define LAGRAIN_CASE(word, Friction)                                         \
@@ -190,8 +195,6 @@ std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, AnyNeighbourhood<Dim
   }
   throw ContractError("a scene names no friction law");
 }
-
-namespace {
 
 template <int Dim>
 AnyNeighbourhood<Dim> neighbourhood_of(const Scene<Dim>& scene) {
@@ -209,8 +212,19 @@ AnyNeighbourhood<Dim> neighbourhood_of(const Scene<Dim>& scene) {
 }  // namespace
 
 template <int Dim>
+std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, AnyNeighbourhood<Dim> neighbourhood) {
+  return make_run(scene, std::move(neighbourhood), PlacementWatch{});
+}
+
+template <int Dim>
 std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, int threads) {
-  auto run = make_run(scene, neighbourhood_of(scene));
+  return make_run(scene, threads, PlacementWatch{});
+}
+
+template <int Dim>
+std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, int threads,
+                                   const PlacementWatch& watch) {
+  auto run = make_run(scene, neighbourhood_of(scene), watch);
   std::int64_t most = run->count();
   for (const Inlet<Dim>& inlet : scene.inlets) most += detail::due(inlet, scene.duration);
   run->use_threads(threads > 0 ? threads : threads_that_pay(most));
@@ -253,7 +267,7 @@ std::string explain(const Run<Dim>& run) {
     out += padded(name, 16) + value + "\n";
   };
   const TimeScales scales = run.time_scales();
-  line("title", scene.title);
+  line("title", readable(scene.title));
   line("dimension", std::to_string(Dim));
   line("contact law", std::string(description_of(scene.normal).in_words) + ", " +
                           std::string(description_of(scene.friction).in_words));
@@ -333,6 +347,49 @@ std::string explain(const Run<Dim>& run) {
   return out;
 }
 
+namespace {
+
+/// Grains that are below all that could stop them: sheets however they are turned, held grains, and
+/// outlets. A plane that is not upright, or a round container that is not, is below everything.
+template <int Dim>
+std::int64_t falling_for_ever(const Run<Dim>& run) {
+  const Scene<Dim>& scene = run.scene();
+  const Vec<Dim> gravity = gravity_at(scene.gravity_course, scene.gravity, run.time());
+  if (scene.domain || gravity.isZero(0)) return 0;
+  const Vec<Dim> down = gravity.normalized();
+  constexpr double kUpright = 1e-9;                       // of a unit vector, by rounding
+  double end = -std::numeric_limits<double>::infinity();  // of all that, along `down` [m]
+  for (const Wall<Dim>& wall : run.walls()) {
+    if (wall.gone) continue;
+    if (const Sheet<Dim>* sheet = wall.pieces()) {
+      end = std::max(end, wall.point.dot(down) + sheet->extent());
+    } else if (const auto* plane = std::get_if<HalfSpace<Dim>>(&wall.shape)) {
+      if (plane->normal.dot(down) < -kUpright) return 0;
+    } else if (const auto& axis = std::get<Cylinder<Dim>>(wall.shape).axis;
+               std::abs(axis.dot(down)) < 1 - kUpright) {
+      return 0;
+    }
+  }
+  for (const Outlet<Dim>& outlet : scene.outlets) {
+    end = std::max(
+        end,
+        outlet.region.low.cwiseProduct(down).cwiseMax(outlet.region.high.cwiseProduct(down)).sum());
+  }
+  const auto depth = [&](int i) { return run.positions().col(i).dot(down); };
+  for (int i = 0; i < run.count(); ++i) {
+    if (run.pinned()[i]) end = std::max(end, depth(i) + run.radii()[i]);
+  }
+  // Where nothing could stop anything, falling is what the scene is about.
+  if (!std::isfinite(end)) return 0;
+  std::int64_t count = 0;
+  for (int i = 0; i < run.count(); ++i) {
+    count += !run.pinned()[i] && depth(i) - run.radii()[i] > end ? 1 : 0;
+  }
+  return count;
+}
+
+}  // namespace
+
 template <int Dim>
 std::vector<std::pair<std::string, std::string>> facts(const Run<Dim>& run) {
   std::vector<std::pair<std::string, std::string>> list;
@@ -350,6 +407,11 @@ std::vector<std::pair<std::string, std::string>> facts(const Run<Dim>& run) {
                         (std::isfinite(contact) ? ", 1/" + rounded(contact / run.time_step()) +
                                                       " of the shortest contact"
                                                 : std::string()));
+  if (const std::int64_t falling = falling_for_ever(run); falling > 0) {
+    fact("fall for ever", std::to_string(falling) +
+                              " grains are below all walls and count in energies and means; a "
+                              "[domain] takes out such grains");
+  }
   fact("contacts", std::to_string(s.contacts) + " between grains, " +
                        std::to_string(s.wall_contacts) + " with walls");
   fact("coordination", rounded(s.coordination));
@@ -429,6 +491,8 @@ template std::unique_ptr<Run<2>> make_run<2>(const Scene<2>&, AnyNeighbourhood<2
 template std::unique_ptr<Run<3>> make_run<3>(const Scene<3>&, AnyNeighbourhood<3>);
 template std::unique_ptr<Run<2>> make_run<2>(const Scene<2>&, int);
 template std::unique_ptr<Run<3>> make_run<3>(const Scene<3>&, int);
+template std::unique_ptr<Run<2>> make_run<2>(const Scene<2>&, int, const PlacementWatch&);
+template std::unique_ptr<Run<3>> make_run<3>(const Scene<3>&, int, const PlacementWatch&);
 template std::string explain<2>(const Run<2>&);
 template std::string explain<3>(const Run<3>&);
 template std::vector<std::pair<std::string, std::string>> facts<2>(const Run<2>&);

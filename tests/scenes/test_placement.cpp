@@ -9,8 +9,10 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -408,5 +410,50 @@ TEST_SUITE("placement") {
           "largest_initial_overlap allows more");
     CHECK(message_of(with(kHeap, "[0.05, 0.3]", "[0.05, -0.3]")) ==
           "s.toml:24: grain[0]: lies behind wall \"floor\"");
+  }
+
+  TEST_CASE_TEMPLATE("a large grain finds its place among small ones, whichever comes first", S,
+                     Space<2>, Space<3>) {
+    constexpr int Dim = S::Dim;
+    for (const auto& groups : {std::vector<std::pair<int, double>>{{10, 0.05}, {300, 0.0005}},
+                               std::vector<std::pair<int, double>>{{300, 0.0005}, {10, 0.05}},
+                               std::vector<std::pair<int, double>>{{20, 1e-9}, {10, 0.05}}}) {
+      const auto placed = place_grains(crowd<Dim>(groups));
+      CHECK(placed.grains.size() == static_cast<std::size_t>(groups[0].first + groups[1].first));
+      CHECK(smallest_gap(placed.grains) >= 0);
+    }
+  }
+
+  TEST_CASE("placing looks at few places, whatever the sizes") {
+    // It took a minute when cells were as small as the smallest grain.
+    const auto begin = std::chrono::steady_clock::now();
+    place_grains(crowd<3>({{50, 0.05}, {50, 0.00005}}));
+    place_grains(crowd<3>({{50, 0.00005}, {50, 0.05}}));
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    CHECK(took.count() < 10);
+  }
+
+  TEST_CASE("whoever watches is told how many grains are placed, and can end it") {
+    struct Enough {};
+    std::int64_t last = 0;
+    place_grains(crowd<2>({{30, 0.01}, {20, 0.02}}), [&](std::int64_t placed, std::int64_t asked) {
+      CHECK(placed >= last);
+      CHECK(asked == 50);
+      last = placed;
+    });
+    CHECK(last == 50);
+    CHECK_THROWS_AS(place_grains(crowd<2>({{30, 0.01}}),
+                                 [](std::int64_t placed, std::int64_t) {
+                                   if (placed == 7) throw Enough{};
+                                 }),
+                    Enough);
+    // Pushing apart and trying in vain can be ended as well.
+    int calls = 0;
+    CHECK_THROWS_AS(place_grains(crowd<2>({{2000, 0.0115}}),
+                                 [&](std::int64_t placed, std::int64_t) {
+                                   calls += placed == 2000 ? 1 : 0;
+                                   if (calls == 3) throw Enough{};
+                                 }),
+                    Enough);
   }
 }

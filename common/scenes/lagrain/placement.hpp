@@ -8,16 +8,22 @@
 #include <lagrain/scene.hpp>
 #include <lagrain/walls.hpp>
 
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace lagrain {
 
+/// Called again and again while grains are placed: with how many are, and how many there will be as
+/// far as the scene says it. What it throws ends the placing; empty where nobody waits.
+using PlacementWatch = std::function<void(std::int64_t placed, std::int64_t asked)>;
+
 /// What contacts remembered in the run that a scene starts from. A column is of a contact.
 struct RecalledContacts {
   std::vector<Pair> pairs;  ///< of grains, by place in the placement
-  Eigen::MatrixXd
-      memories;  ///< of these, as the first sees it; how many numbers is the law's affair
+  /// Of these, as the first sees it; how many numbers each has is the law's affair.
+  Eigen::MatrixXd memories;
   std::vector<WallPair> at_walls;  ///< the same for walls of the scene
   Eigen::MatrixXd wall_memories;   ///< of these
 };
@@ -52,5 +58,9 @@ struct Placement {
 /// fit between the scene's walls
 template <int Dim>
 Placement<Dim> place_grains(const Scene<Dim>& scene);
+
+/// The same while somebody watches.
+template <int Dim>
+Placement<Dim> place_grains(const Scene<Dim>& scene, const PlacementWatch& watch);
 
 }  // namespace lagrain

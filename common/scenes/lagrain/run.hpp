@@ -192,6 +192,11 @@ class Run {
 template <int Dim>
 std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, int threads = 0);
 
+/// The same while somebody watches the grains being placed.
+template <int Dim>
+std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, int threads,
+                                   const PlacementWatch& watch);
+
 /// The same on one thread with a neighbourhood of one's own in place of the one that it names.
 template <int Dim>
 std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, AnyNeighbourhood<Dim> neighbourhood);
