@@ -6,16 +6,17 @@
 
 #include "figure.hpp"
 #include "report.hpp"
+#include "sweep.hpp"
+#include "terminal.hpp"
 
 #include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 #include <lagrain/units.hpp>
+#include <lagrain/words.hpp>
 
 #include <CLI/CLI.hpp>
 
-#include <unistd.h>
-
-#include <chrono>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -23,6 +24,8 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -36,6 +39,7 @@ constexpr int kStopped = 130;  // 128 + SIGINT, as shells have it
 
 constexpr const char* kUntil = "--until";
 constexpr const char* kCheckpointEvery = "--checkpoint-every";
+constexpr const char* kSet = "--set";
 
 volatile std::sig_atomic_t stop_requested = 0;
 
@@ -47,28 +51,6 @@ extern "C" void request_stop(int signal) {
 
 bool stopping() { return stop_requested != 0; }
 
-/// One line on a terminal that overwrites itself; nothing elsewhere.
-class ProgressLine {
- public:
-  ~ProgressLine() { clear(); }
-
-  void show(const std::string& text) {
-    if (!terminal_) return;
-    // Carriage return, text, and erase what a longer line has left.
-    std::fprintf(stderr, "\r%s\x1b[K", text.c_str());
-    shown_ = true;
-  }
-  void clear() {
-    if (shown_) std::fputs("\r\x1b[K", stderr);
-    shown_ = false;
-  }
-  bool terminal() const { return terminal_; }
-
- private:
-  bool terminal_ = isatty(STDERR_FILENO) == 1;
-  bool shown_ = false;
-};
-
 std::string clock_text(double seconds) {
   const auto whole = static_cast<long>(seconds + 0.5);
   char text[32];
@@ -78,6 +60,12 @@ std::string clock_text(double seconds) {
     std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
   }
   return text;
+}
+
+/// Whatever the sentence quotes, the terminal obeys none of it.
+int complain(const std::string& sentence, int code) {
+  std::cerr << "lagrain: " << readable(sentence) << "\n";
+  return code;
 }
 
 /// What running and resuming have in common.
@@ -130,12 +118,29 @@ int record_with_progress(const Run<Dim>& run, const fs::path& folder,
 struct RunArguments : RecordArguments {
   std::string scene;
   std::string out;
+  Settings settings;
   bool explain = false;
 };
 
+/// Makes a run, with progress on a terminal while its grains are placed.
+/// @throws Interrupted once the user wants to stop
+template <int Dim>
+std::unique_ptr<Run<Dim>> make_watched_run(const RunArguments& arguments) {
+  ProgressLine line;
+  Pace pace;
+  pace.is_due();  // what takes less than a moment needs no words
+  return make_run(read_scene<Dim>(arguments.scene, arguments.settings), arguments.threads,
+                  [&](std::int64_t placed, std::int64_t asked) {
+                    if (stopping()) throw Interrupted();
+                    if (!line.terminal() || !pace.is_due()) return;
+                    line.show("placing grains: " + grouped(placed) +
+                              (asked > placed ? " of " + grouped(asked) : std::string()));
+                  });
+}
+
 template <int Dim>
 int run_scene(const RunArguments& arguments) {
-  const auto run = make_run(read_scene<Dim>(arguments.scene), arguments.threads);
+  const auto run = make_watched_run<Dim>(arguments);
   if (arguments.explain) {
     std::cout << explain(*run);
     return 0;
@@ -148,7 +153,56 @@ int run_scene(const RunArguments& arguments) {
 }
 
 int run_command(const RunArguments& arguments) {
-  return scene_dimension(arguments.scene) == 2 ? run_scene<2>(arguments) : run_scene<3>(arguments);
+  try {
+    return scene_dimension(arguments.scene, arguments.settings) == 2 ? run_scene<2>(arguments)
+                                                                     : run_scene<3>(arguments);
+  } catch (const Interrupted&) {
+    return complain("stopped while grains were placed; nothing was written", kStopped);
+  }
+}
+
+struct SweepArguments : RecordArguments {
+  std::string scene;
+  std::string out;
+  Settings settings;
+  std::vector<std::string> variations;
+  int jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  std::string plot = SweepPlan{}.plot;
+};
+
+int sweep_command(const SweepArguments& arguments) {
+  SweepPlan plan;
+  plan.scene = arguments.scene;
+  plan.settings = arguments.settings;
+  for (const std::string& text : arguments.variations) {
+    plan.variations.push_back(read_variation(text));
+  }
+  plan.folder = arguments.out.empty()
+                    ? fs::path("runs") / (fs::path(arguments.scene).stem().string() + "_sweep")
+                    : fs::path(arguments.out);
+  plan.jobs = arguments.jobs;
+  plan.plot = arguments.plot;
+  plan.checkpoint_every = arguments.checkpoint_every;
+  ProgressLine line;
+  const SweepProgress end = sweep(plan, stopping, [&](const SweepProgress& p) {
+    line.show(fixed(100 * p.fraction, 0) + " %  " + std::to_string(p.finished) + " of " +
+              std::to_string(p.runs) + " runs are finished" +
+              (p.broken > 0 ? ", " + std::to_string(p.broken) + " broke off" : std::string()));
+  });
+  line.clear();
+  const std::string finished =
+      std::to_string(end.finished) + " of " + std::to_string(end.runs) + " runs are finished";
+  const std::string table = (plan.folder / "results.csv").string();
+  if (end.finished + end.broken < end.runs) {
+    return complain(
+        "stopped; " + finished + ", see " + table + " (to go on: the same command again)",
+        kStopped);
+  }
+  std::cout << "wrote " << table << "\n";
+  if (end.broken == 0) return 0;
+  return complain(
+      finished + ", " + std::to_string(end.broken) + " broke off: " + table + " says why",
+      kSimulationFailed);
 }
 
 struct ResumeArguments : RecordArguments {
@@ -189,11 +243,8 @@ struct FigureArguments {
 /// Progress on a terminal, at most ten times a second.
 void show_progress(FigureOptions& options, ProgressLine& line) {
   if (!line.terminal()) return;
-  auto last = std::chrono::steady_clock::time_point{};
-  options.progress = [&line, last](double fraction, const std::string& doing) mutable {
-    const auto now = std::chrono::steady_clock::now();
-    if (now - last < std::chrono::milliseconds(100)) return;
-    last = now;
+  options.progress = [&line, pace = Pace()](double fraction, const std::string& doing) mutable {
+    if (!pace.is_due()) return;
     line.show(fixed(100 * fraction, 0) + " %  " + doing);
   };
 }
@@ -249,10 +300,7 @@ int report_command(const FigureArguments& arguments) {
   return 0;
 }
 
-void add_record_options(CLI::App& app, RecordArguments& arguments) {
-  app.add_option("--threads", arguments.threads,
-                 "threads that share a step (default: as many as pay)")
-      ->check(CLI::Range(1, 1024));
+void add_checkpoint_option(CLI::App& app, RecordArguments& arguments) {
   app.add_option_function<std::string>(
          kCheckpointEvery,
          [&](const std::string& text) {
@@ -262,9 +310,50 @@ void add_record_options(CLI::App& app, RecordArguments& arguments) {
       ->default_str(rounded(arguments.checkpoint_every) + " s");
 }
 
-int complain(const std::string& sentence, int code) {
-  std::cerr << "lagrain: " << sentence << "\n";
-  return code;
+void add_record_options(CLI::App& app, RecordArguments& arguments) {
+  app.add_option("--threads", arguments.threads,
+                 "threads that share a step (default: as many as pay)")
+      ->check(CLI::Range(1, 1024));
+  add_checkpoint_option(app, arguments);
+}
+
+/// The sentence about the first command or flag that there is not; empty if there are all. CLI11
+/// would blame the words behind it.
+std::string unknown_word(CLI::App& app, const std::vector<std::string>& words) {
+  if (words.empty()) return {};
+  CLI::App* command = &app;
+  std::size_t first = 0;
+  if (!words[0].starts_with('-')) {
+    std::vector<std::string> names;
+    std::string list;
+    for (const CLI::App* known : app.get_subcommands({})) {
+      names.push_back(known->get_name());
+      list += (list.empty() ? "" : ", ") + names.back();
+    }
+    if (std::find(names.begin(), names.end(), words[0]) == names.end()) {
+      return "unknown command " + shown(words[0]) + suggestion(words[0], names) + "; there are " +
+             list;
+    }
+    command = app.get_subcommand(words[0]);
+    first = 1;
+  }
+  std::vector<std::string> flags;
+  for (const CLI::Option* option : command->get_options()) {
+    for (const std::string& name : option->get_lnames()) flags.push_back("--" + name);
+  }
+  for (std::size_t k = first; k < words.size() && words[k] != "--"; ++k) {
+    if (!words[k].starts_with("--")) continue;
+    const std::string flag = words[k].substr(0, words[k].find('='));
+    if (std::find(flags.begin(), flags.end(), flag) != flags.end()) continue;
+    return "unknown flag " + shortened(flag) + suggestion(flag, flags);
+  }
+  return {};
+}
+
+void add_settings(CLI::App& app, Settings& settings) {
+  app.add_option(kSet, settings,
+                 "a key of the scene and its value, \"law.friction=0.3\"; again for each")
+      ->allow_extra_args(false);
 }
 
 }  // namespace
@@ -279,6 +368,7 @@ int main(int argc, char** argv) {
   CLI::App* run_app = app.add_subcommand("run", "Run a scene and write a folder");
   run_app->add_option("scene", run.scene, "scene file (TOML)")->required();
   run_app->add_option("--out", run.out, "folder to write (default: runs/NAME of the scene)");
+  add_settings(*run_app, run.settings);
   add_record_options(*run_app, run);
   run_app->add_flag("--explain", run.explain, "say what the scene is made of; run nothing");
 
@@ -289,6 +379,25 @@ int main(int argc, char** argv) {
       kUntil, [&](const std::string& text) { resume.until = seconds_of(kUntil, text); },
       "new end, \"2.5 s\" (default: the scene's)");
   add_record_options(*resume_app, resume);
+
+  SweepArguments sweep;
+  CLI::App* sweep_app =
+      app.add_subcommand("sweep", "Run a scene with several values of its keys, side by side");
+  sweep_app->add_option("scene", sweep.scene, "scene file (TOML)")->required();
+  sweep_app
+      ->add_option("--vary", sweep.variations,
+                   "a key and its values, \"law.friction=0.1,0.3\"; again for each")
+      ->required()
+      ->allow_extra_args(false);
+  add_settings(*sweep_app, sweep.settings);
+  sweep_app->add_option("--out", sweep.out,
+                        "folder to write (default: runs/NAME_sweep of the scene)");
+  sweep_app->add_option("--jobs", sweep.jobs, "runs at a time, each with one thread")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1024));
+  sweep_app->add_option("--plot", sweep.plot, "column of the series that is drawn against time")
+      ->capture_default_str();
+  add_checkpoint_option(*sweep_app, sweep);
 
   FigureArguments figure;
   CLI::App* figure_app = app.add_subcommand("figure", "Draw figures and their gallery");
@@ -302,6 +411,8 @@ int main(int argc, char** argv) {
   report_app->add_option("--out", report.out, "folder to write")->capture_default_str();
   report_app->add_flag("--quick", report.quick, "small scenes and few steps");
 
+  const std::string unknown = unknown_word(app, {argv + 1, argv + argc});
+  if (!unknown.empty()) return complain(unknown + " (see lagrain --help)", kBadInput);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wish) {  // --help, --version
@@ -315,6 +426,7 @@ int main(int argc, char** argv) {
   try {
     if (report_app->parsed()) return report_command(report);
     if (resume_app->parsed()) return resume_command(resume);
+    if (sweep_app->parsed()) return sweep_command(sweep);
     return run_app->parsed() ? run_command(run) : figure_command(figure);
   } catch (const SceneError& error) {
     return complain(error.what(), kBadInput);

@@ -195,7 +195,7 @@ TEST_SUITE("program") {
     place.write("file", "x");
 
     CHECK(place.run({"run", "nowhere.toml"}) == 2);
-    CHECK(place.err() == "lagrain: nowhere.toml: cannot be read\n");
+    CHECK(place.err() == "lagrain: nowhere.toml: does not exist\n");
     CHECK(place.run({"run", "heap.toml", "--out", "file/run"}) == 2);
     CHECK(place.err().substr(0, 35) == "lagrain: file/run: cannot be writte");
     CHECK(place.run({"run", "heap.toml", "--fast"}) == 2);
@@ -314,6 +314,178 @@ TEST_SUITE("program") {
     CHECK_FALSE(fs::exists(place / "unborn"));
     CHECK(place.run({"resume", "nowhere"}) == 2);
     CHECK(holds(place.err(), "nowhere: there is no checkpoint (checkpoint.h5) in this folder"));
+  }
+
+  TEST_CASE("a command or a flag that there is not is named, with the nearest one") {
+    const Place place;
+    place.write("base.toml", kHeap);
+
+    CHECK(place.run({"run", "--thread", "2", "base.toml"}) == 2);
+    CHECK(place.err() ==
+          "lagrain: unknown flag --thread (did you mean \"--threads\"?) (see lagrain --help)\n");
+    CHECK(place.run({"run", "base.toml", "--exlain"}) == 2);
+    CHECK(holds(place.err(), "unknown flag --exlain (did you mean \"--explain\"?)"));
+    CHECK(place.run({"--verison"}) == 2);
+    CHECK(holds(place.err(), "did you mean \"--version\"?"));
+    CHECK(place.run({"sweeep", "x"}) == 2);
+    CHECK(
+        holds(place.err(), "unknown command \"sweeep\" (did you mean \"sweep\"?); there are run"));
+    CHECK(place.run({"\x1b[31mrun", "x"}) == 2);
+    CHECK(holds(place.err(), "unknown command \"\\u001B[31mrun\""));
+    CHECK(!fs::exists(place / "runs"));
+  }
+
+  TEST_CASE("--set puts values in the place of the scene's, and the folder's scene holds them") {
+    const Place place;
+    place.write("heap.toml", kHeap);
+
+    REQUIRE(place.run({"run", "heap.toml", "--out", "a", "--set", "law.friction=0.3", "--set",
+                       "fill[0].count=5", "--set", "duration=10 ms"}) == 0);
+    REQUIRE(place.run({"run", "a/scene.toml", "--out", "b"}) == 0);
+
+    CHECK(holds(content(place / "a/scene.toml"), "friction = 0.3\n"));
+    CHECK(content(place / "a/scene.toml") == content(place / "b/scene.toml"));
+    CHECK(content(place / "a/series.csv") == content(place / "b/series.csv"));
+    CHECK(place.run({"run", "heap.toml", "--out", "c", "--set", "law.frction=0.3"}) == 2);
+    CHECK(
+        place.err() ==
+        "lagrain: --set law.frction=0.3: law.frction: unknown key (did you mean \"friction\"?)\n");
+    CHECK(place.run({"run", "heap.toml", "--explain", "--set", "fill.count=7"}) == 0);
+    CHECK(holds(place.out(), "grains          9\n"));
+    CHECK(place.run({"run", "heap.toml", "--set"}) == 2);
+    CHECK(!fs::exists(place / "c"));
+  }
+
+  TEST_CASE("placing grains hears Ctrl-C and SIGTERM: exit 130, one sentence, nothing written") {
+    const Place place;
+    place.write("crowd.toml",
+                with(with(kHeap, "count = 12", "count = 1000000\narrangement = \"random\""),
+                     "{ uniform = [\"8 mm\", \"10 mm\"] }", "\"0.06 mm\""));
+    for (const int signal : {SIGINT, SIGTERM}) {
+      const pid_t child = place.start({"run", "crowd.toml", "--out", "result"});
+      std::this_thread::sleep_for(std::chrono::milliseconds(500));
+      kill(child, signal);
+
+      CHECK(Place::exit_code(child) == 130);
+      CHECK(place.err() == "lagrain: stopped while grains were placed; nothing was written\n");
+      CHECK(!fs::exists(place / "result"));
+    }
+  }
+
+  TEST_CASE("a summary says how many grains fall for ever") {
+    const Place place;
+    const std::string plate =
+        with(kHeap, "point = [0, 0]\nnormal = [0, 1]", "from = [0, 0]\nto = [0.2, 0]");
+    place.write("falling.toml", plate +
+                                    "[[grain]]\nposition = [0.5, -2]\nradius = 0.01\n"
+                                    "material = \"rock\"\n");
+    place.write("domain.toml",
+                content(place / "falling.toml") + "[domain]\nlow = [-5, -5]\nhigh = [5, 5]\n");
+    place.write("heap.toml", kHeap);
+
+    for (const char* name : {"falling", "domain", "heap"}) {
+      REQUIRE(place.run({"run", std::string(name) + ".toml"}) == 0);
+      CHECK(holds(content(place / "runs" / name / "summary.txt"), "1 grains are below all walls") ==
+            (name == std::string("falling")));
+    }
+  }
+
+  TEST_CASE("a sweep runs all combinations, and the same command again leaves them as they are") {
+    const Place place;
+    place.write("heap.toml", kHeap);
+    const std::vector<std::string> command{"sweep",  "heap.toml",
+                                           "--vary", "law.friction=0.1,0.3",
+                                           "--vary", "duration=5 ms, \"10 ms\"",
+                                           "--set",  "fill.count=6",
+                                           "--out",  "s",
+                                           "--plot", "contacts"};
+    REQUIRE(place.run(command) == 0);
+
+    CHECK(place.out() == "wrote s/results.csv\n");
+    const std::string table = content(place / "s/results.csv");
+    CHECK(std::count(table.begin(), table.end(), '\n') == 5);
+    CHECK(table.starts_with("run[-],law.friction,duration[s],ending[-],time[s],kinetic[J],"));
+    CHECK(holds(table, "\nlaw.friction=0.1_duration=5ms,0.1,0.005,finished,"));
+    CHECK(holds(table, "\nlaw.friction=0.3_duration=10ms,0.3,0.01,finished,"));
+    REQUIRE(place.run({"run", "heap.toml", "--out", "alone", "--set", "law.friction=0.3", "--set",
+                       "duration=10 ms", "--set", "fill.count=6"}) == 0);
+    const fs::path one = place / "s/law.friction=0.3_duration=10ms";
+    CHECK(content(place / "alone/series.csv") == content(one / "series.csv"));
+    CHECK(content(place / "alone/scene.toml") == content(one / "scene.toml"));
+
+    const auto before = fs::last_write_time(one / "summary.txt");
+    REQUIRE(place.run(command) == 0);
+    CHECK(fs::last_write_time(one / "summary.txt") == before);
+    CHECK(content(place / "s/results.csv") == table);
+  }
+
+  TEST_CASE("a run of a sweep that breaks off is named, and stops no other") {
+    const Place place;
+    place.write("heap.toml", with(kHeap, "velocity = [0, \"-2 m/s\"]", "velocity = [0, -2]"));
+
+    CHECK(place.run({"sweep", "heap.toml", "--vary", "grain[1].velocity=[0, -2],[0, -400]",
+                     "--jobs", "1"}) == 1);
+    CHECK(holds(place.err(), "1 of 2 runs are finished, 1 broke off: runs/heap_sweep/results.csv"));
+    const std::string table = content(place / "runs/heap_sweep/results.csv");
+    CHECK(holds(table, "grain-1-.velocity") == false);
+    CHECK(holds(table, "finished"));
+    CHECK(holds(table, "broke off: t = "));
+  }
+
+  TEST_CASE("a sweep that is stopped keeps what is done and goes on with the same command") {
+    const Place place;
+    place.write("heap.toml", with(kHeap, "\"20 ms\"", "\"60 ms\""));
+    const std::vector<std::string> command{"sweep",  "heap.toml", "--vary", "seed=1,2,3",
+                                           "--jobs", "2",         "--out",  "s"};
+    REQUIRE(place.run({"sweep", "heap.toml", "--vary", "seed=1,2,3", "--out", "whole"}) == 0);
+    int stopped = 0;
+    for (const int signal : {SIGTERM, SIGINT, SIGKILL}) {
+      const pid_t child = place.start(command);
+      std::this_thread::sleep_for(std::chrono::milliseconds(60));
+      kill(child, signal);
+      const int code = Place::exit_code(child);
+      CHECK((code == 130 || code == 0 || signal == SIGKILL));
+      if (code == 130) {
+        ++stopped;
+        CHECK(holds(place.err(),
+                    "of 3 runs are finished, see s/results.csv (to go on: the same "
+                    "command again)"));
+      }
+    }
+    MESSAGE("stopped " << stopped << " times");
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));  // until those of the killed end
+    REQUIRE(place.run(command) == 0);
+    for (const char* run : {"seed=1", "seed=2", "seed=3"}) {
+      CHECK(content(place / "s" / run / "series.csv") ==
+            content(place / "whole" / run / "series.csv"));
+    }
+  }
+
+  TEST_CASE("a wrong sweep is one sentence, exit code 2, and nothing written") {
+    const Place place;
+    place.write("heap.toml", kHeap);
+    const auto refused = [&](const std::vector<std::string>& rest) {
+      std::vector<std::string> words{"sweep", "heap.toml", "--out", "s"};
+      words.insert(words.end(), rest.begin(), rest.end());
+      CHECK(place.run(words) == 2);
+      CHECK(!fs::exists(place / "s"));
+      const std::string err = place.err();
+      CHECK(std::count(err.begin(), err.end(), '\n') == 1);
+      return err;
+    };
+    CHECK(holds(refused({}), "--vary"));
+    CHECK(holds(refused({"--vary", "seed"}), "expected a key, \"=\" and values"));
+    CHECK(holds(refused({"--vary", "seed=1,,2"}), "expected a key, \"=\" and values"));
+    CHECK(holds(refused({"--vary", "sed=1,2"}), "sed: unknown key (did you mean \"seed\"?)"));
+    CHECK(holds(refused({"--vary", "seed=1,x"}), "--set seed=x: seed: expected a whole number"));
+    CHECK(holds(refused({"--vary", "seed=1", "--jobs", "0"}), "--jobs"));
+
+    CHECK(place.run({"sweep", "heap.toml", "--out", "s", "--vary", "seed=1", "--plot", "knetic"}) ==
+          2);
+    CHECK(holds(place.err(),
+                "--plot: no series has a column \"knetic\" (did you mean "
+                "\"kinetic\"?)"));
+    CHECK(fs::exists(place / "s/results.csv"));
   }
 
   TEST_CASE("--explain says what the scene is made of, and runs and writes nothing") {

@@ -167,25 +167,42 @@ void read_text(const std::string& text) {
 
 TEST_SUITE("mutations") {
   TEST_CASE("spoilt scenes of the plane are refused in one sentence, or read") {
-    check_spoilt({kHeap,
-                  kHeap + "[output]\nframes_every = \"5 ms\"\n[drag]\nrate = 1\n[[outlet]]\nlow = "
-                          "[-2, -2]\nhigh = [-1, -1]\n[[measure]]\nregion = { low = [0, 0], high = "
-                          "[1, 1] }\nslices = 3\n",
-                  with(kHeap, "gravity = [0, -9.81]",
-                       "gravity = { times = [0, 1], values = [[0, -9.81], [1, 1]] }") +
-                      "motion = { type = \"shake\", amplitude = [0, 1], frequency = 3 }\n[[box]]\n"
-                      "low = [0, 0]\nhigh = [1, 1]\nmaterial = \"rock\"\nopen = [\"top\"]\n"},
-                 read_text<2>);
+    const std::string more = R"([output]
+frames_every = "5 ms"
+[drag]
+rate = 1
+[[outlet]]
+low = [-2, -2]
+high = [-1, -1]
+[[measure]]
+region = { low = [0, 0], high = [1, 1] }
+slices = 3
+)";
+    const std::string moving = R"(motion = { type = "shake", amplitude = [0, 1], frequency = 3 }
+[[box]]
+low = [0, 0]
+high = [1, 1]
+material = "rock"
+open = ["top"]
+)";
+    const std::string turned = with(kHeap, "gravity = [0, -9.81]",
+                                    "gravity = { times = [0, 1], values = [[0, -9.81], [1, 1]] }");
+    check_spoilt({kHeap, kHeap + more, turned + moving}, read_text<2>);
   }
 
   TEST_CASE("spoilt scenes of space are refused in one sentence, or read") {
-    check_spoilt(
-        {kSphere, in_space<3>(kHeap),
-         kSphere + "[[wall]]\npoint = [0, 0, 0]\naxis = [0, 0, 1]\nheight = 1\nradii = [1, "
-                   "2]\nturning = { type = \"steady\", axis = [0, 0, 1], rate = 1 }\n",
-         kSphere + "[[wall]]\ncorners = [[0, 0, 0], [1, 0, 0], [1, 1, 0]]\nmotion = { type "
-                   "= \"path\", times = [0, 1], shifts = [[0, 0, 0], [1, 0, 0]] }\n"},
-        read_text<3>);
+    const std::string cone = R"([[wall]]
+point = [0, 0, 0]
+axis = [0, 0, 1]
+height = 1
+radii = [1, 2]
+turning = { type = "steady", axis = [0, 0, 1], rate = 1 }
+)";
+    const std::string plate = R"([[wall]]
+corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0]]
+motion = { type = "path", times = [0, 1], shifts = [[0, 0, 0], [1, 0, 0]] }
+)";
+    check_spoilt({kSphere, in_space<3>(kHeap), kSphere + cone, kSphere + plate}, read_text<3>);
   }
 
   TEST_CASE("spoilt settings are refused in one sentence, or taken") {
