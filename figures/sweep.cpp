@@ -54,6 +54,12 @@ struct Member {
   std::string heard;  // from its process: shares of its steps, line by line, then the ending
 };
 
+/// A value without the quotes that make it text.
+std::string unquoted(const std::string& value) {
+  const bool quoted = value.size() >= 2 && value.front() == '"' && value.back() == '"';
+  return quoted ? value.substr(1, value.size() - 2) : value;
+}
+
 /// A part of the name of a folder.
 std::string in_file_name(std::string_view text) {
   std::string name;
@@ -82,7 +88,7 @@ std::vector<Member> members_of(const SweepPlan& plan) {
     for (const Variation& variation : plan.variations) {
       block /= variation.values.size();
       const std::string& value = variation.values[k / block % variation.values.size()];
-      member.values.push_back(value);
+      member.values.push_back(unquoted(value));
       member.settings.push_back(variation.key + "=" + value);
       member.name += (member.name.empty() ? "" : "_") + in_file_name(variation.key + "=" + value);
     }

@@ -456,8 +456,8 @@ TEST_SUITE("program") {
     std::this_thread::sleep_for(std::chrono::milliseconds(200));  // until those of the killed end
     REQUIRE(place.run(command) == 0);
     for (const char* run : {"seed=1", "seed=2", "seed=3"}) {
-      CHECK(content(place / "s" / run / "series.csv") ==
-            content(place / "whole" / run / "series.csv"));
+      CHECK(content(place / "s" / run / "frames/0001.csv") ==
+            content(place / "whole" / run / "frames/0001.csv"));
     }
   }
 
