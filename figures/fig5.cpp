@@ -7,6 +7,7 @@
 // Below: a strip in time, the force on the slab, and where the energy went.
 
 #include "figure.hpp"
+#include "force_scale.hpp"
 
 #include <lagrain/csv.hpp>
 #include <lagrain/numbers.hpp>
@@ -32,7 +33,6 @@ constexpr int kLayers = 8;
 constexpr double kImpactWindow = 0.6;  // of the strip and the plots, after the impact [s]
 constexpr double kFrameEvery = 0.004;  // simulated time between video frames [s]
 constexpr double kWallHeight = 0.59;   // drawn, of the width of the bed
-constexpr double kPercentile = 0.999;  // of the forces: stronger ones are drawn no thicker
 
 struct Snapshot {
   double time = 0;  ///< [s]
@@ -97,16 +97,6 @@ void add_layers(DisplayList& list, const Panel& panel, const Run<2>& run, const 
   list.add(PopClip{});
 }
 
-/// The force above which lines grow no thicker [N].
-double force_ceiling(const std::vector<ContactRecord<2>>& contacts) {
-  std::vector<double> forces;
-  for (const ContactRecord<2>& c : contacts) forces.push_back(c.force.norm());
-  if (forces.empty()) return 1;
-  const auto at = static_cast<std::ptrdiff_t>(kPercentile * static_cast<double>(forces.size() - 1));
-  std::nth_element(forces.begin(), forces.begin() + at, forces.end());
-  return forces[static_cast<std::size_t>(at)];
-}
-
 /// Width of the strongest line [pt]: so many mean grain diameters that chains stand out and the
 /// grains between them stay visible.
 double widest_line(const Panel& panel, const Run<2>& run) {
@@ -124,7 +114,7 @@ void add_forces(DisplayList& list, const Panel& panel, const Run<2>& run, const 
   std::stable_sort(contacts.begin(), contacts.end(), [](const auto& a, const auto& b) {
     return a.force.squaredNorm() < b.force.squaredNorm();
   });
-  const double ceiling = force_ceiling(contacts);
+  const double ceiling = force_ceiling<2>(contacts);
   const double widest = widest_line(panel, run);
   for (const ContactRecord<2>& c : contacts) {
     const Vec<2> from = record.peak.position.col(c.i);
@@ -316,13 +306,6 @@ Plot energy_plot(const Record& record) {
           .legend = Corner::top_left};
 }
 
-/// Round values for a legend of forces up to the given one [N]: about 10, 30 and 100 %.
-std::vector<double> legend_forces(double ceiling) {
-  const double unit = std::pow(10, std::floor(std::log10(ceiling)));
-  const double top = std::floor(ceiling / unit) * unit;
-  return {0.2 * top, 0.5 * top, top};
-}
-
 void add_letter(DisplayList& list, const Box& box, const std::string& letter) {
   list.add(Label{.text = letter, .at = {box.low[0], box.high[1] + 4}, .size = style::kTitle});
 }
@@ -349,7 +332,7 @@ DisplayList page(const Run<2>& run, const Record& record) {
   add_letter(list, right,
              "(b) forces, $t$ = " +
                  std::to_string(std::lround(1000 * (record.peak.time - record.impact))) + " ms");
-  const double ceiling = force_ceiling(record.peak_contacts);
+  const double ceiling = force_ceiling<2>(record.peak_contacts);
   std::vector<double> legend = legend_forces(1e-3 * ceiling);
   add_width_legend(list, {right.low[0] + 12, right.high[1] - 16}, legend,
                    widest_line(force_panel, run) / (1e-3 * ceiling), "kN");
@@ -385,7 +368,7 @@ DisplayList large_panel(const Run<2>& run, const Record& record, bool forces) {
   const Panel panel(list.page(), world);
   if (forces) {
     add_forces(list, panel, run, record);
-    const double ceiling = 1e-3 * force_ceiling(record.peak_contacts);
+    const double ceiling = 1e-3 * force_ceiling<2>(record.peak_contacts);
     add_width_legend(list, {24, height - 22}, legend_forces(ceiling),
                      widest_line(panel, run) / ceiling, "kN");
   } else {

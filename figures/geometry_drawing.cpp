@@ -69,19 +69,19 @@ Eigen::AlignedBox2d world_of(const Panel& panel) {
   return {(panel.box().low - origin) / panel.scale(), (panel.box().high - origin) / panel.scale()};
 }
 
-/// Cells that are not empty, cut to the view's box, on the page.
-std::vector<std::vector<Vec<2>>> cells_of(const View& view, const Triangulation<2>& triangulation) {
+}  // namespace
+
+std::vector<std::vector<Vec<2>>> cells_on_page(const Panel& panel,
+                                               const Triangulation<2>& triangulation) {
   std::vector<std::vector<Vec<2>>> cells;
-  for (int i = 0; i < view.discs.size(); ++i) {
-    const Columns<2> cell = laguerre_cell(triangulation, i, world_of(view.panel));
+  for (int i = 0; i < triangulation.size(); ++i) {
+    const Columns<2> cell = laguerre_cell(triangulation, i, world_of(panel));
     if (cell.cols() < 3) continue;
     cells.emplace_back();
-    for (Eigen::Index k = 0; k < cell.cols(); ++k) cells.back().push_back(view.point(cell.col(k)));
+    for (Eigen::Index k = 0; k < cell.cols(); ++k) cells.back().push_back(panel.point(cell.col(k)));
   }
   return cells;
 }
-
-}  // namespace
 
 void add_fills(DisplayList& list, const View& view, Colour fill) {
   for (int i = 0; i < view.discs.size(); ++i) {
@@ -122,7 +122,7 @@ void add_triangulation(DisplayList& list, const View& view, const Found& found) 
 
 void add_cells_and_discs(DisplayList& list, const View& view,
                          const Triangulation<2>& triangulation) {
-  const auto cells = cells_of(view, triangulation);
+  const auto cells = cells_on_page(view.panel, triangulation);
   list.add(PushClip{view.panel.box()});
   for (const auto& cell : cells) list.add(Polygon{.corners = cell, .fill = style::kCell});
   add_fills(list, view, kOverlapFill);
@@ -160,7 +160,7 @@ void add_zoom(DisplayList& list, const Found& found, const Zoom& zoom) {
   const Vec<2> half = Vec<2>::Constant(0.5 * zoom.width);
   const Box window{zoom.middle - half, zoom.middle + half};
   const Panel panel(zoom.page, window);
-  const auto cells = cells_of({panel, found.discs}, found.triangulation);
+  const auto cells = cells_on_page(panel, found.triangulation);
   list.add(PushClip{panel.box()});
   for (const auto& cell : cells) list.add(Polygon{.corners = cell, .fill = style::kCell});
   std::vector<CutDisc> cuts;

@@ -36,6 +36,10 @@ struct View {
   double radius(int i) const { return panel.length(discs.radius[i]); }
 };
 
+/// Laguerre cells of all sites that are not empty, cut to a panel's box, on the page.
+std::vector<std::vector<Vec<2>>> cells_on_page(const Panel& panel,
+                                               const Triangulation<2>& triangulation);
+
 void add_fills(DisplayList& list, const View& view, Colour fill);
 void add_outlines(DisplayList& list, const View& view, const Stroke& outline);
 void add_sites(DisplayList& list, const View& view, double radius = 1.2);

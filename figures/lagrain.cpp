@@ -5,6 +5,7 @@
 /// Exit codes: 0 done, 1 the simulation went wrong, 2 the input is wrong, 130 stopped by Ctrl-C.
 
 #include "figure.hpp"
+#include "picture_commands.hpp"
 #include "report.hpp"
 #include "sweep.hpp"
 #include "terminal.hpp"
@@ -399,6 +400,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   add_checkpoint_option(*sweep_app, sweep);
 
+  const figures::PictureCommands pictures(app);
+
   FigureArguments figure;
   CLI::App* figure_app = app.add_subcommand("figure", "Draw figures and their gallery");
   figure_app->add_option("numbers", figure.numbers, "which figures (default: all)");
@@ -427,6 +430,7 @@ int main(int argc, char** argv) {
     if (report_app->parsed()) return report_command(report);
     if (resume_app->parsed()) return resume_command(resume);
     if (sweep_app->parsed()) return sweep_command(sweep);
+    if (pictures.parsed()) return pictures.run(stopping);
     return run_app->parsed() ? run_command(run) : figure_command(figure);
   } catch (const SceneError& error) {
     return complain(error.what(), kBadInput);
