@@ -274,8 +274,8 @@ template <int Dim>
 std::vector<ContactRecord<Dim>> RunFolder<Dim>::read_contacts(const fs::path& file,
                                                               const Snapshot<Dim>& snapshot) const {
   CsvFile csv(file);
-  const std::size_t i = csv.column("i"), j = csv.column("j"), overlap = csv.column("overlap");
-  const std::optional<std::size_t> wall = csv.find("wall");
+  const std::size_t i = csv.column("i"), j = csv.column("j"), wall = csv.column("wall"),
+                    overlap = csv.column("overlap");
   std::vector<std::size_t> normal, force;
   for (int d = 0; d < Dim; ++d) normal.push_back(csv.column(std::string("n") + "xyz"[d]));
   for (int d = 0; d < Dim; ++d) force.push_back(csv.column(std::string("f") + "xyz"[d]));
@@ -283,17 +283,9 @@ std::vector<ContactRecord<Dim>> RunFolder<Dim>::read_contacts(const fs::path& fi
   while (csv.next()) {
     ContactRecord<Dim> contact;
     contact.i = place_of(snapshot.frame.id, csv.number(i));
-    // A wall stands in a column of its own, or in place of the second grain.
-    std::string name = wall ? csv.word(*wall) : std::string();
-    const std::string partner = csv.word(j);
-    if (partner.find_first_not_of("0123456789") == std::string::npos && !partner.empty()) {
-      contact.j = place_of(snapshot.frame.id, csv.number(j));
-    } else if (name.empty()) {
-      name = partner;
-    }
-    for (std::size_t w = 0; w < snapshot.walls.size() && contact.j < 0; ++w) {
-      if (snapshot.walls[w].name == name) contact.wall = static_cast<int>(w);
-    }
+    contact.j = place_of(snapshot.frame.id, csv.number(j));
+    contact.wall = static_cast<int>(csv.number(wall));
+    if (contact.wall >= static_cast<int>(snapshot.walls.size())) continue;
     contact.overlap = csv.number(overlap);
     for (int d = 0; d < Dim; ++d) {
       contact.normal[d] = csv.number(normal[static_cast<std::size_t>(d)]);

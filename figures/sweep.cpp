@@ -4,6 +4,7 @@
 #include "figure.hpp"
 
 #include <lagrain/csv.hpp>
+#include <lagrain/csv_rows.hpp>
 #include <lagrain/output.hpp>
 #include <lagrain/units.hpp>
 #include <lagrain/words.hpp>
@@ -270,22 +271,6 @@ void run_all(std::vector<Member>& members, const SweepPlan& plan, const std::fun
 
 // ---- Results --------------------------------------------------------------------------------
 
-/// The cells of a line of comma-separated values.
-std::vector<std::string> cells_of(std::string_view line) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"') {
-      quoted = !quoted;
-    } else if (c == ',' && !quoted) {
-      cells.emplace_back();
-    } else {
-      cells.back() += c;
-    }
-  }
-  return cells;
-}
-
 /// The series of a run: names of the columns, and whole rows.
 struct SeriesTable {
   std::vector<std::string> head;
@@ -295,8 +280,9 @@ struct SeriesTable {
 SeriesTable series_in(const fs::path& folder) {
   SeriesTable table;
   const std::string text = text_of(folder / "series.csv");
-  for (std::size_t at = 0, end; (end = text.find('\n', at)) != std::string::npos; at = end + 1) {
-    auto cells = cells_of(std::string_view(text).substr(at, end - at));
+  const std::size_t whole = text.rfind('\n') + 1;  // a row may not be written to its end yet
+  for (CsvRows rows(std::string_view(text).substr(0, whole)); rows.next();) {
+    std::vector<std::string> cells(rows.cells().begin(), rows.cells().end());
     if (table.head.empty()) {
       table.head = std::move(cells);
     } else if (cells.size() == table.head.size()) {
