@@ -229,7 +229,7 @@ TEST_SUITE("grain files") {
     CHECK(refusal_of("x,y,radius\n1,1,1,1\n") ==
           "bed.csv:2: 4 values, expected 3, as many as columns are named");
     CHECK(refusal_of("x,y,radius,omega\n1,1,1,\"fast\n\"\n") ==
-          "bed.csv:2: omega: expected an angular velocity [rad/s], got \"fast?\"");
+          "bed.csv:2: omega: expected an angular velocity [rad/s], got \"fast\\n\"");
 
     const std::string wood = "x,y,radius,material\n1,1,1,rock\n1,5,1,rook\n";
     CHECK(
