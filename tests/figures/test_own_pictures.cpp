@@ -83,14 +83,15 @@ TEST_SUITE("own pictures") {
     CHECK(last.frame.position == run->positions());
     CHECK(last.frame.velocity == run->velocities());
     CHECK(*last.frame.spin == *run->spins());
-    CHECK(last.walls.back().point == run->walls().back().point);
+    CHECK(last.walls.front().point == run->walls().front().point);
     CHECK(folder.nearest(0.041, {}).source == "frame 2");
 
     // In between the series tells, to a row of it.
     const auto again = make_run(parse_scene<2>(kPressed, "scene.toml"), 1);
     again->advance_to(folder.time_of(3));
-    const Vec<2> there = again->walls().back().point;
-    CHECK((folder.at(3, {}).walls.back().point - there).norm() < 1e-9);
+    const Vec<2> there = again->walls().front().point;
+    CHECK((folder.at(3, {}).walls.front().point - there).norm() < 1e-6);
+    CHECK((there - again->scene().walls.front().point).norm() > 1e-3);
   }
 
   TEST_CASE("grains, walls, time, length and colours are on the page, forces if asked for") {
