@@ -5,6 +5,7 @@
 
 #include <lagrain/style.hpp>
 #include <lagrain/text.hpp>
+#include <lagrain/words.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,11 +13,6 @@
 #include <utility>
 
 namespace lagrain {
-namespace detail {
-// The scene reader's hint, see toml_table.hpp, which needs toml++.
-std::string suggestion(std::string_view word, const std::vector<std::string>& known);
-}  // namespace detail
-
 namespace figures {
 namespace {
 
@@ -75,8 +71,8 @@ PicturePage plot_of_series(const std::filesystem::path& series, std::vector<std:
     const std::string name = asked.substr(0, asked.find('['));
     const auto place = csv.find(name);
     if (!place || *place == time) {
-      throw SceneError(series.string() + ": no column \"" + name + "\"" +
-                       detail::suggestion(name, csv.names()));
+      throw SceneError(series.string() + ": no column " + shown(name) +
+                       suggestion(name, csv.names()));
     }
     const std::string& unit = csv.units()[*place];
     auto plot =

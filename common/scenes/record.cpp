@@ -147,7 +147,7 @@ class Recorder {
       write_file(kept, frame_csv(run_, last_good_));
       write_summary(std::string("broke off: ") + error.what(), false);
       throw SimulationError(std::string(error.what()) + "; the state at t = " +
-                            shortest(last_good_.time) + " s is kept in " + kept.string());
+                            rounded(last_good_.time, 6) + " s is kept in " + kept.string());
     }
     // A run that is resumed later shall not see the frame that ends this one.
     if (stopped) write_checkpoint();
@@ -393,8 +393,8 @@ std::unique_ptr<Run<Dim>> resume_run(const Checkpoint& checkpoint, std::optional
     throw SceneError(name + ": " + error.what());
   }
   if (until && run->time() > *until) {
-    throw SceneError(name + ": the run has gone on to " + shortest(run->time()) +
-                     " s, further than the " + shortest(*until) + " s that were asked for");
+    throw SceneError(name + ": the run has gone on to " + rounded(run->time(), 6) +
+                     " s, further than the " + rounded(*until, 6) + " s that were asked for");
   }
   return run;
 }

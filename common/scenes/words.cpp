@@ -99,7 +99,7 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
   if (word.size() > kLongest) return {};
   const std::string meant = in_small_letters(word);
   std::string nearest;
-  std::size_t least = std::max<std::size_t>(2, meant.size() / 2) + 1;
+  std::size_t least = std::max<std::size_t>(2, meant.size() / 3) + 1;
   for (const std::string& other : known) {
     if (other.size() > kLongest) continue;
     const std::size_t distance = edit_distance(meant, in_small_letters(other));

@@ -39,7 +39,7 @@ output = { frames_every = "20 ms" }
 
 std::unique_ptr<Run<2>> recorded(const fs::path& folder, const std::string& text = kPressed) {
   auto run = make_run(parse_scene<2>(text, "scene.toml"), 1);
-  record(*run, {.folder = folder});
+  record(*run, {folder, {}, {}});
   return run;
 }
 

@@ -117,7 +117,7 @@ TEST_SUITE("scene") {
           "s.toml:20: fill[0].cuont: unknown key (did you mean \"count\"?)");
     CHECK(after("friction = \"elastic\"", "friction = \"elastics\"") ==
           "s.toml:8: friction: expected \"none\", \"viscous\", \"elastic\" or \"rolling\", got "
-          "\"elastics\"");
+          "\"elastics\" (did you mean \"elastic\"?)");
     CHECK(after("material = \"gravel\"", "material = \"gravle\"") ==
           "s.toml:19: fill[0].material: no material \"gravle\" (did you mean \"gravel\"?)");
   }
@@ -133,9 +133,9 @@ TEST_SUITE("scene") {
     CHECK(after("dimension = 2", "dimension = 4") == "s.toml:2: dimension: expected 2 or 3, got 4");
     CHECK(message_of(with(kHeap, "density = 2000", "")) ==
           "s.toml:19: fill[0].material: grains of \"gravel\" need [materials.gravel] density");
-    CHECK(
-        message_of(kHeap.substr(0, kHeap.find("[[fill]]"))) ==
-        "s.toml: no grains: expected at least one [[fill]], [[grain]], [[grains]], [[inlet]] or start");
+    CHECK(message_of(kHeap.substr(0, kHeap.find("[[fill]]"))) ==
+          "s.toml: no grains: expected at least one [[fill]], [[grain]], [[grains]], "
+          "[[inlet]] or start");
   }
 
   TEST_CASE("a key that the model does not use is an error") {
@@ -302,7 +302,7 @@ TEST_SUITE("scene") {
     const auto refusal = [&](const std::string& law) { return message_of(sizes(law)); };
     const std::string at = "s.toml:21: fill[0].radius.";
     CHECK(refusal("uniform = [1, 2], by = \"volume\"") ==
-          at + "by: expected \"number\" or \"mass\", got \"volume\"");
+          at + "by: expected \"number\" or \"mass\", got \"volume\" (did you mean \"mass\"?)");
     CHECK(refusal("values = [1, 2], weights = [1]") ==
           at + "weights: expected as many weights as values, not all 0");
     CHECK(refusal("sieves = [1, 2]") == at + "passing: missing; expected a list");
