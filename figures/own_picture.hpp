@@ -44,7 +44,7 @@ struct PictureWish {
   bool skins = false;
   bool walls = true;
   std::optional<ColourBy> colour = {};  ///< none: materials if several, or the speed
-  /// Azimuth and elevation of the viewer, of spheres [rad]. Azimuth 0 looks along y, from the front.
+  /// Azimuth and elevation of who looks at spheres [rad]. With azimuth 0 they look along y.
   Vec<2> view = Vec<2>(-0.56, 0.40);
   std::vector<Cut> cuts = {};                   ///< what is taken out of spheres
   std::optional<std::array<int, 2>> size = {};  ///< width and height [px]; none: as it fits

@@ -33,8 +33,7 @@ struct Snapshot {
 template <int Dim>
 Snapshot<Dim> snapshot_of(const Run<Dim>& run);
 
-/// A file of comma-separated values as a run writes it. A last row that is not ended yet is left
-/// out.
+/// A file of comma-separated values as a run writes it, without a last row that is not ended yet.
 class CsvFile {
  public:
   /// @throws SceneError if it cannot be read or is empty

@@ -33,8 +33,13 @@ law = { stiffness = "1e5 N/m", restitution = 0.5, friction = 0.4 }
 materials = { glass = { density = 2500 } }
 fill = [{ count = 30, radius = "10 mm", region = { low = [0, 0], high = [0.2, 0.3] } }]
 box = [{ low = [0, 0], high = [0.2, 0.3], open = ["top"] }]
-wall = [{ name = "lid $x$", point = [0, 0.3], normal = [0, -1], motion = { type = "piston", mass = 20, load = [0, -400] } }]
-output = { frames_every = "20 ms" }
+[[wall]]
+name = "lid $x$"
+point = [0, 0.3]
+normal = [0, -1]
+motion = { type = "piston", mass = 20, load = [0, -400] }
+[output]
+frames_every = "20 ms"
 )";
 
 std::unique_ptr<Run<2>> recorded(const fs::path& folder, const std::string& text = kPressed) {
@@ -133,7 +138,7 @@ TEST_SUITE("own pictures") {
           std::string::npos);
 
     std::string text = kPressed;
-    text.replace(text.find("frames_every"), 0, "contacts = true, ");
+    text.replace(text.find("frames_every"), 0, "contacts = true\n");
     const auto run = recorded(kept.path, text);
     const Snapshot<2> last = RunFolder<2>(kept.path).at(5, {.contacts = true});
     const auto exact = run->contacts();
