@@ -9,11 +9,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 #include <utility>
 
-namespace lagrain {
-namespace figures {
+namespace lagrain::figures {
 namespace {
 
 constexpr double kWidth = 330, kPanel = 190, kBetween = 12;  // [pt]
@@ -145,5 +143,4 @@ void write_page(const PicturePage& page, const std::filesystem::path& file) {
   }
 }
 
-}  // namespace figures
-}  // namespace lagrain
+}  // namespace lagrain::figures
