@@ -9,6 +9,7 @@
 #include "report.hpp"
 #include "sweep.hpp"
 #include "terminal.hpp"
+#include "watch_page.hpp"
 
 #include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
@@ -73,6 +74,7 @@ int complain(const std::string& sentence, int code) {
 struct RecordArguments {
   int threads = 0;
   double checkpoint_every = RecordOptions{}.checkpoint_every;  // [s]
+  bool watch = false;
 };
 
 /// The time [s] that a flag gives.
@@ -97,14 +99,24 @@ int record_with_progress(const Run<Dim>& run, const fs::path& folder,
   options.stop = stopping;
   options.checkpoint_every = arguments.checkpoint_every;
   ProgressLine line;
-  if (line.terminal()) {
+  std::optional<figures::WatchPage<Dim>> page;
+  if (arguments.watch) page.emplace(run, folder);
+  if (line.terminal() || page) {
     options.progress = [&](const Progress& p) {
+      if (page) page->look(p);
       line.show(fixed(100 * p.fraction, 0) + " %  t = " + rounded(p.time, 4) + " s of " +
                 rounded(run.scene().duration, 4) + " s  " + std::to_string(p.contacts) +
                 " contacts  " + clock_text(p.seconds_left) + " left");
     };
   }
-  const bool finished = record_run(options);
+  bool finished = false;
+  try {
+    finished = record_run(options);
+  } catch (const SimulationError& error) {
+    if (page) page->end(std::string("broke off: ") + error.what());
+    throw;
+  }
+  if (page) page->end(finished ? "finished" : "stopped");
   line.clear();
   if (finished) {
     std::cout << "wrote " << folder.string() << "\n";
@@ -315,6 +327,8 @@ void add_record_options(CLI::App& app, RecordArguments& arguments) {
   app.add_option("--threads", arguments.threads,
                  "threads that share a step (default: as many as pay)")
       ->check(CLI::Range(1, 1024));
+  app.add_flag("--watch", arguments.watch,
+               "keep a page watch.html in the folder that shows how far the run is");
   add_checkpoint_option(app, arguments);
 }
 

@@ -533,4 +533,48 @@ TEST_SUITE("program") {
       }
     }
   }
+
+  TEST_CASE("a run is watched, drawn, filmed and plotted; what cannot be is said") {
+    const Place place;
+    place.write("heap.toml", kOnTriangulation);
+    const std::string folder = "a b";
+    if (place.run({"run", "heap.toml", "--out", folder, "--watch"}) == 2 &&
+        holds(place.err(), "without its renderer")) {
+      MESSAGE("SKIPPED: the renderer was not built");
+      return;
+    }
+
+    const std::string page = content(place / folder / "watch.html");
+    CHECK(holds(page, "<p>finished</p>"));
+    CHECK_FALSE(holds(page, "refresh"));
+    CHECK(fs::exists(place / folder / "watch.png"));
+    CHECK(fs::exists(place / folder / "watch_series.png"));
+
+    CHECK(place.run({"draw", folder, "--show", "grains,forces,walls"}) == 0);
+    CHECK(holds(place.out(), "wrote a b/picture.png (the checkpoint, t = 0.02"));
+    CHECK(place.run({"draw", folder, "--at", "0", "--colour", "group", "--out", "first.svg"}) == 0);
+    CHECK(place.out() == "wrote first.svg (frame 0, t = 0 s)\n");
+    CHECK(place.run({"plot", folder, "kinetic", "contacts", "--out", "p.pdf"}) == 0);
+    CHECK(content(place / "p.pdf").starts_with("%PDF"));
+    CHECK(place.run({"movie", folder}) == 0);
+
+    const auto refused = [&](std::vector<std::string> words, const std::string& why) {
+      CAPTURE(why);
+      CHECK(place.run(words) == 2);
+      const std::string err = place.err();
+      CHECK(std::count(err.begin(), err.end(), '\n') == 1);
+      CHECK(holds(err, why));
+    };
+    refused({"draw", "nowhere"}, "no folder; expected that of a run");
+    refused({"draw", folder, "--out", "a.gif"}, "ends in none of .png, .pdf, .svg");
+    refused({"draw", folder, "--colour", "blue"}, "there is no \"blue\"");
+    refused({"draw", folder, "--show", "grain"}, "there is no \"grain\"");
+    refused({"draw", folder, "--size", "3x4"}, "expected width and height in pixels");
+    refused({"draw", folder, "--at", "2 m"}, "expected a time");
+    refused({"draw", folder, "--view", "top"}, "for spheres");
+    refused({"draw", folder, "--at", "0", "--show", "forces"}, "contacts = true");
+    refused({"plot", folder, "kinetik"}, "did you mean \"kinetic\"?");
+    refused({"movie", folder, "--fps", "0"}, "--fps");
+    CHECK_FALSE(fs::exists(place / "a.gif"));
+  }
 }
