@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Frames as PolyData of VTK in XML, for ParaView and OVITO. A file has a head that says which arrays
-// there are, and the arrays behind it, raw and compressed by zlib in blocks ("VTK XML Formats" of
-// the VTK documentation). A file .pvd is ParaView's list of files and times.
+// Frames as PolyData of VTK in XML, for ParaView and OVITO. A file has a head that says which
+// arrays there are, and the arrays behind it, raw and compressed by zlib in blocks ("VTK XML
+// Formats" of the VTK documentation). A file .pvd is ParaView's list of files and times.
 #include "frame_formats.hpp"
 
 #include <lagrain/numbers.hpp>

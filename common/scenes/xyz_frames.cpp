@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Extended XYZ, as libAtoms and ASE define it: for each frame the number of grains, a line that says
-// what the columns are, and a line for each grain. OVITO and ASE read it.
+// Extended XYZ, as libAtoms and ASE define it: for each frame the number of grains, a line that
+// says what the columns are, and a line for each grain. OVITO and ASE read it.
 #include "frame_formats.hpp"
 
 #include <lagrain/numbers.hpp>
