@@ -170,7 +170,7 @@ PictureWish wish_of(const Arguments& arguments, int dimension) {
 fs::path file_of(const Arguments& arguments, const std::string& name,
                  const std::vector<std::string>& endings) {
   if (arguments.out.empty()) return fs::path(arguments.folder) / name;
-  const fs::path file = arguments.out;
+  fs::path file = arguments.out;
   const std::string ending = file.extension().string();
   if (std::find(endings.begin(), endings.end(), ending) == endings.end()) {
     std::string list;

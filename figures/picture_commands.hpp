@@ -6,7 +6,7 @@
 #include <functional>
 #include <memory>
 
-namespace CLI {
+namespace CLI {  // NOLINT: theirs
 class App;
 }
 

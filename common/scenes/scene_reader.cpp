@@ -585,7 +585,7 @@ class Reader {
     if (!top_.has(keys::kStart)) return;
     TomlTable s = top_.table(keys::kStart, "a run, such as { run = \"runs/bed\" }");
     if (!s.has(keys::kRun)) s.missing(keys::kRun, "the folder of a run");
-    scene_.start.emplace(folder_ / s.text(keys::kRun));
+    scene_.start = StartState{folder_ / s.text(keys::kRun)};
     // A run keeps no other state whole.
     if (s.has(keys::kInstant)) s.word(keys::kInstant, {detail::kLastState});
     s.finish();

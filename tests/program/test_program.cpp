@@ -469,7 +469,7 @@ TEST_SUITE("program") {
       words.insert(words.end(), rest.begin(), rest.end());
       CHECK(place.run(words) == 2);
       CHECK(!fs::exists(place / "s"));
-      const std::string err = place.err();
+      std::string err = place.err();
       CHECK(std::count(err.begin(), err.end(), '\n') == 1);
       return err;
     };
@@ -558,7 +558,7 @@ TEST_SUITE("program") {
     CHECK(content(place / "p.pdf").starts_with("%PDF"));
     CHECK(place.run({"movie", folder}) == 0);
 
-    const auto refused = [&](std::vector<std::string> words, const std::string& why) {
+    const auto refused = [&](const std::vector<std::string>& words, const std::string& why) {
       CAPTURE(why);
       CHECK(place.run(words) == 2);
       const std::string err = place.err();

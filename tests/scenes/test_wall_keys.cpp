@@ -23,16 +23,14 @@ using namespace lagrain::test;
 
 namespace {
 
-const std::string& kSpace = kSphere;
-
 std::string plane() {
-  std::string text = with(kSpace, "dimension = 3", "dimension = 2");
+  std::string text = with(kSphere, "dimension = 3", "dimension = 2");
   return with(with(text, "[0, 0, -9.81]", "[0, -9.81]"), "[0, 0, 1]", "[0, 1]");
 }
 
 template <int Dim>
 Wall<Dim> wall_of(const std::string& keys) {
-  const std::string text = (Dim == 2 ? plane() : kSpace) + "[[wall]]\n" + keys;
+  const std::string text = (Dim == 2 ? plane() : kSphere) + "[[wall]]\n" + keys;
   const Scene<Dim> once = parse_scene<Dim>(text, "s.toml");
   const std::string resolved = to_toml(once);
   const Scene<Dim> twice = parse_scene<Dim>(resolved, "s.toml");
@@ -55,7 +53,7 @@ Wall<Dim> wall_of(const std::string& keys) {
 template <int Dim>
 std::string error_of(const std::string& tables) {
   return scene_error_of(
-      [&] { parse_scene<Dim>((Dim == 2 ? plane() : kSpace) + tables, "s.toml"); });
+      [&] { parse_scene<Dim>((Dim == 2 ? plane() : kSphere) + tables, "s.toml"); });
 }
 
 bool has(const std::string& text, const std::string& part) {
@@ -140,7 +138,7 @@ TEST_SUITE("walls in scenes") {
         {{0, 0, 0}, {500, 0, 0}, {1000, 0, 0}}};  // without an area
     write_binary_stl(folder.path / "plate.stl", facets);
     std::ofstream(folder.path / "s.toml")
-        << kSpace << "[[wall]]\nmesh = \"plate.stl\"\nscale = 0.001\npoint = [0, 0, 1]\n";
+        << kSphere << "[[wall]]\nmesh = \"plate.stl\"\nscale = 0.001\npoint = [0, 0, 1]\n";
     const Scene<3> scene = read_scene<3>(folder.path / "s.toml");
     CHECK(scene.walls.at(0).piece_count() == 2);
     CHECK(scene.walls[0].foot({0.5, 0.5, 3}).distance == 2);
@@ -152,13 +150,13 @@ TEST_SUITE("walls in scenes") {
     std::ofstream(folder.path / "capitals.stl")
         << "SOLID S\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 1E0\nVERTEX 1 0 1\nVERTEX 0 1 1\n"
            "ENDLOOP\nENDFACET\nENDSOLID S\n";
-    std::ofstream(folder.path / "c.toml") << kSpace << "[[wall]]\nmesh = \"capitals.stl\"\n";
+    std::ofstream(folder.path / "c.toml") << kSphere << "[[wall]]\nmesh = \"capitals.stl\"\n";
     const Scene<3> capitals = read_scene<3>(folder.path / "c.toml");
     CHECK(capitals.walls.at(0).piece_count() == 1);
     CHECK(capitals.walls[0].foot({0.25, 0.25, 3}).distance == 2);
 
     const auto error = [&](const std::string& name) {
-      std::ofstream(folder.path / "t.toml") << kSpace << "[[wall]]\nmesh = \"" << name << "\"\n";
+      std::ofstream(folder.path / "t.toml") << kSphere << "[[wall]]\nmesh = \"" << name << "\"\n";
       return scene_error_of([&] { read_scene<3>(folder.path / "t.toml"); });
     };
     CHECK(has(error("none.stl"), "none.stl: does not exist"));
@@ -175,7 +173,7 @@ TEST_SUITE("walls in scenes") {
 
   TEST_CASE("an opening leaves the rest of a side of a box, thin") {
     const Scene<3> scene =
-        parse_scene<3>(kSpace +
+        parse_scene<3>(kSphere +
                            "[[box]]\nlow = [0, 0, 0]\nhigh = [4, 3, 10]\nopen = [\"top\"]\n"
                            "openings = [{ side = \"bottom\", low = [1, 1], high = [2, 3] }]\n",
                        "s.toml");
@@ -205,7 +203,7 @@ TEST_SUITE("walls in scenes") {
 
   TEST_CASE("an opening that ends at the rim but for rounding leaves no strip there") {
     const auto pieces = [](const std::string& low, const std::string& high) {
-      return parse_scene<3>(kSpace + "[[box]]\nlow = [0, 0, 0]\nhigh = [0.3, 1, 10]\n" +
+      return parse_scene<3>(kSphere + "[[box]]\nlow = [0, 0, 0]\nhigh = [0.3, 1, 10]\n" +
                                 "openings = [{ side = \"bottom\", low = " + low +
                                 ", high = " + high + " }]\n",
                             "s.toml")
