@@ -51,8 +51,8 @@ namespace {
 
 /// Longer than the work between two rounds of a usual step, and shorter than the time that a system
 /// gives a program before it lets another one have the core. 10,192 spheres on two idle cores took
-/// 1.88 s with it; 2.1 s with a tenth, as a thread that sleeps wakes up late, and with three times
-/// as much 1.88 s, but 1.45 instead of 1.29 times the processor time of one thread.
+/// 1.91 s with it and 2.02 s with a tenth of it, as a thread that sleeps wakes up late (medians of
+/// 21 runs); the processor time was 1.26 and 1.17 times that of one thread.
 constexpr auto kLook = std::chrono::microseconds(300);
 
 /// Tells the processor that we are waiting.

@@ -135,25 +135,24 @@ struct RunArguments : RecordArguments {
   bool explain = false;
 };
 
-/// Makes a run, with progress on a terminal while its grains are placed.
-/// @throws Interrupted once the user wants to stop
-template <int Dim>
-std::unique_ptr<Run<Dim>> make_watched_run(const RunArguments& arguments) {
-  ProgressLine line;
+/// Shows on a terminal how far the placing of grains is, and ends it once the user wants to stop:
+/// it throws Interrupted then.
+PlacementWatch placement_watch() {
   Pace pace;
   pace.is_due();  // what takes less than a moment needs no words
-  return make_run(read_scene<Dim>(arguments.scene, arguments.settings), arguments.threads,
-                  [&](std::int64_t placed, std::int64_t asked) {
-                    if (stopping()) throw Interrupted();
-                    if (!line.terminal() || !pace.is_due()) return;
-                    line.show("placing grains: " + grouped(placed) +
-                              (asked > placed ? " of " + grouped(asked) : std::string()));
-                  });
+  return [line = std::make_shared<ProgressLine>(), pace](std::int64_t placed,
+                                                         std::int64_t asked) mutable {
+    if (stopping()) throw Interrupted();
+    if (!line->terminal() || !pace.is_due()) return;
+    line->show("placing grains: " + grouped(placed) +
+               (asked > placed ? " of " + grouped(asked) : std::string()));
+  };
 }
 
 template <int Dim>
 int run_scene(const RunArguments& arguments) {
-  const auto run = make_watched_run<Dim>(arguments);
+  const auto run = make_run(read_scene<Dim>(arguments.scene, arguments.settings), arguments.threads,
+                            placement_watch());
   if (arguments.explain) {
     std::cout << explain(*run);
     return 0;
@@ -225,7 +224,8 @@ struct ResumeArguments : RecordArguments {
 
 template <int Dim>
 int resume_scene(const ResumeArguments& arguments, const Checkpoint& checkpoint) {
-  const auto run = resume_run<Dim>(checkpoint, arguments.until, arguments.threads);
+  const auto run =
+      resume_run<Dim>(checkpoint, arguments.until, arguments.threads, placement_watch());
   if (run->finished()) {
     std::cout << arguments.folder << " is at its end, t = " << rounded(run->time(), 4)
               << " s; to go further: --until\n";
@@ -243,8 +243,13 @@ int resume_command(const ResumeArguments& arguments) {
     std::cerr << "lagrain: " << checkpoint.trouble << "; taking " << checkpoint.file.string()
               << " instead\n";
   }
-  return checkpoint_dimension(checkpoint) == 2 ? resume_scene<2>(arguments, checkpoint)
-                                               : resume_scene<3>(arguments, checkpoint);
+  try {
+    return checkpoint_dimension(checkpoint) == 2 ? resume_scene<2>(arguments, checkpoint)
+                                                 : resume_scene<3>(arguments, checkpoint);
+  } catch (const Interrupted&) {
+    return complain("stopped before the first step; " + arguments.folder + " is as it was",
+                    kStopped);
+  }
 }
 
 struct FigureArguments {
@@ -325,7 +330,7 @@ void add_checkpoint_option(CLI::App& app, RecordArguments& arguments) {
 
 void add_record_options(CLI::App& app, RecordArguments& arguments) {
   app.add_option("--threads", arguments.threads,
-                 "threads that share a step (default: as many as pay)")
+                 "at most so many threads share a step (default: all cores from 10,000 grains on)")
       ->check(CLI::Range(1, 1024));
   app.add_flag("--watch", arguments.watch,
                "keep a page watch.html in the folder that shows how far the run is");
@@ -449,6 +454,7 @@ int main(int argc, char** argv) {
   } catch (const SceneError& error) {
     return complain(error.what(), kBadInput);
   } catch (const Interrupted&) {
+    if (pictures.parsed()) return complain("stopped; the film is not finished", kStopped);
     return report_app->parsed()
                ? complain("stopped; what was measured is in " + report.out, kStopped)
                : complain("stopped; what was drawn is in " + figure.out, kStopped);

@@ -9,6 +9,7 @@
 #include <lagrain/skins.hpp>
 #include <lagrain/style.hpp>
 #include <lagrain/text.hpp>
+#include <lagrain/wall_shapes.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -219,23 +220,6 @@ Eigen::AlignedBox<double, Dim> window_of(const Scene<Dim>& scene, const Snapshot
 
 // ---- Walls in the plane -------------------------------------------------------------------------
 
-std::vector<Vec<2>> arc_points(const Arc& arc) {
-  const auto angle = [&](const Vec<2>& p) {
-    return std::atan2(p[1] - arc.centre()[1], p[0] - arc.centre()[0]);
-  };
-  const auto ahead = [](double a) { return a < 0 ? a + 2 * std::numbers::pi : a; };
-  const double start = angle(arc.from());
-  const double to = ahead(angle(arc.to()) - start), through = ahead(angle(arc.through()) - start);
-  const double sweep = through <= to ? to : to - 2 * std::numbers::pi;
-  std::vector<Vec<2>> points;
-  constexpr int kParts = 48;
-  for (int k = 0; k <= kParts; ++k) {
-    const double a = start + sweep * k / kParts;
-    points.push_back(arc.centre() + arc.radius() * Vec<2>(std::cos(a), std::sin(a)));
-  }
-  return points;
-}
-
 /// The part of a straight line that lies in a box and in front of all half-spaces.
 std::optional<std::array<Vec<2>, 2>> visible_part(const Wall<2>& wall, const Box& window,
                                                   const std::vector<Wall<2>>& walls) {
@@ -283,25 +267,23 @@ void add_walls(DisplayList& list, const Panel& panel, const Box& window, const S
   for (const auto& outlet : scene.outlets) region(outlet.region);
   for (const Wall<2>& wall : walls) {
     if (wall.gone) continue;
-    if (const Sheet<2>* sheet = wall.pieces()) {
-      const WallPose<2> pose = wall.pose();
-      for (const WallPiece<2>& piece : sheet->pieces()) {
-        std::vector<Vec<2>> points = piece.index() == 0 ? std::get<WallSegment>(piece).corners()
-                                                        : arc_points(std::get<Arc>(piece));
-        for (Vec<2>& p : points) p = pose.point + pose.frame * p;
-        chain(points, style::kWallLine);
+    if (std::holds_alternative<HalfSpace<2>>(wall.shape)) {
+      if (const auto part = visible_part(wall, window, walls)) {
+        chain({(*part)[0], (*part)[1]}, style::kWallLine);
       }
-    } else if (const auto* round = std::get_if<Cylinder<2>>(&wall.shape)) {
-      std::vector<Vec<2>> points;
-      constexpr int kParts = 240;
-      for (int k = 0; k <= kParts; ++k) {
-        const double a = 2 * std::numbers::pi * k / kParts;
-        points.push_back(wall.point + round->radius * Vec<2>(std::cos(a), std::sin(a)));
-      }
-      chain(points, style::kWallLine);
-    } else if (const auto part = visible_part(wall, window, walls)) {
-      chain({(*part)[0], (*part)[1]}, style::kWallLine);
+      continue;
     }
+    // Facets that follow each other are one line.
+    std::vector<Vec<2>> points;
+    for (const std::vector<Vec<2>>& facet : facets_of(wall, {})) {
+      if (!points.empty() && points.back() != facet.front()) {
+        chain(points, style::kWallLine);
+        points.clear();
+      }
+      if (points.empty()) points.push_back(facet.front());
+      points.push_back(facet.back());
+    }
+    chain(points, style::kWallLine);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <lagrain/laguerre3.hpp>
 #include <lagrain/style.hpp>
+#include <lagrain/wall_shapes.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -12,24 +13,10 @@
 namespace lagrain::figures {
 namespace {
 
-constexpr int kRound = 48;           // sides of what is drawn round
 constexpr double kSmallGrain = 0.3;  // of its radius: so that lines between centres are seen
 constexpr Colour kGlass{120, 150, 180, 30};
 
 using Polygon3 = std::vector<Vec<3>>;
-
-/// The part of a convex polygon where inside . (x - point) >= 0.
-Polygon3 cut(const Polygon3& polygon, const Vec<3>& point, const Vec<3>& inside, double slack) {
-  Polygon3 part;
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Vec<3>& a = polygon[k];
-    const Vec<3>& b = polygon[(k + 1) % polygon.size()];
-    const double sa = inside.dot(a - point) + slack, sb = inside.dot(b - point) + slack;
-    if (sa >= 0) part.push_back(a);
-    if ((sa > 0 && sb < 0) || (sa < 0 && sb > 0)) part.push_back(a + sa / (sa - sb) * (b - a));
-  }
-  return part;
-}
 
 /// Adds what is drawn of walls.
 class WallPainter {
@@ -78,13 +65,13 @@ class WallPainter {
     Polygon3 face{middle - reach * u - reach * v, middle + reach * u - reach * v,
                   middle + reach * u + reach * v, middle - reach * u + reach * v};
     for (int d = 0; d < 3; ++d) {
-      face = cut(face, window_.min(), Vec<3>::Unit(d), slack);
-      face = cut(face, window_.max(), -Vec<3>::Unit(d), slack);
+      face = clipped(face, Vec<3>::Unit(d), window_.min(), slack);
+      face = clipped(face, -Vec<3>::Unit(d), window_.max(), slack);
     }
     for (const Wall<3>& other : walls_) {
       const auto* plane = std::get_if<HalfSpace<3>>(&other.shape);
       if (plane != nullptr && &other != &wall && !other.gone) {
-        face = cut(face, other.point, plane->normal, slack);
+        face = clipped(face, plane->normal, other.point, slack);
       }
       // The end of a drum is round: the half-space is seen within it.
       const auto* round = std::get_if<Cylinder<3>>(&other.shape);
@@ -101,8 +88,8 @@ class WallPainter {
   static Polygon3 circle(const Vec<3>& centre, const Vec<3>& axis, double radius) {
     const Vec<3> u = any_normal<3>(axis), v = axis.cross(u);
     Polygon3 points;
-    for (int k = 0; k < kRound; ++k) {
-      const double a = 2 * std::numbers::pi * k / kRound;
+    for (int k = 0; k < kFacets; ++k) {
+      const double a = 2 * std::numbers::pi * k / kFacets;
       points.push_back(centre + radius * (std::cos(a) * u + std::sin(a) * v));
     }
     return points;

@@ -2,6 +2,7 @@
 #include "run_folder.hpp"
 
 #include <lagrain/files.hpp>
+#include <lagrain/format.hpp>
 #include <lagrain/numbers.hpp>
 #include <lagrain/output.hpp>
 
@@ -37,7 +38,7 @@ std::string group_name(const std::vector<std::string>& names, int group) {
 }
 
 /// The place of an id in an increasing list; -1 if it is not there.
-int place_of(const std::vector<int>& ids, double id) {
+int place_of(const std::vector<int>& ids, std::int64_t id) {
   const auto found = std::lower_bound(ids.begin(), ids.end(), id);
   return found != ids.end() && *found == id ? static_cast<int>(found - ids.begin()) : -1;
 }
@@ -98,6 +99,15 @@ double CsvFile::number(std::size_t column) const {
   return value;
 }
 
+std::int64_t CsvFile::whole(std::size_t column) const {
+  const double value = number(column);
+  constexpr double kMost = 1e15;  // beyond it doubles no longer hold all whole numbers
+  if (!(std::abs(value) < kMost) || value != std::floor(value)) {
+    fail(names_[column] + ": expected a whole number");
+  }
+  return static_cast<std::int64_t>(value);
+}
+
 void CsvFile::fail(const std::string& message) const {
   throw SceneError(file_.string() + ":" + std::to_string(rows_.line()) + ": " + message);
 }
@@ -124,13 +134,13 @@ RunFolder<Dim>::RunFolder(fs::path folder)
     const std::size_t number = list.column("frame"), step = list.column("step"),
                       time = list.column("time");
     while (list.next()) {
-      std::string name = list.word(number);
+      const std::int64_t frame = list.whole(number);
+      const std::string name = numbered("", frame, ".csv");
       Listed listed;
-      listed.source = "frame " + name;
-      if (name.size() < 4) name.insert(0, 4 - name.size(), '0');
-      listed.file = folder_ / "frames" / (name + ".csv");
-      listed.contacts = folder_ / "contacts" / (name + ".csv");
-      listed.step = std::llround(list.number(step));
+      listed.source = "frame " + std::to_string(frame);
+      listed.file = folder_ / "frames" / name;
+      listed.contacts = folder_ / "contacts" / name;
+      listed.step = list.whole(step);
       listed.time = list.number(time);
       if (!fs::exists(listed.contacts, ignored)) listed.contacts.clear();
       if (fs::exists(listed.file, ignored)) frames_.push_back(std::move(listed));
@@ -245,7 +255,7 @@ Frame<Dim> RunFolder<Dim>::read_grains(const Listed& listed) const {
   std::vector<double> numbers, radii;
   Frame<Dim> frame;
   while (csv.next()) {
-    frame.id.push_back(static_cast<int>(csv.number(id)));
+    frame.id.push_back(static_cast<int>(csv.whole(id)));
     for (const std::size_t c : position) numbers.push_back(csv.number(c));
     for (const std::size_t c : velocity) numbers.push_back(csv.number(c));
     for (const std::size_t c : spin) numbers.push_back(csv.number(c));
@@ -282,10 +292,9 @@ std::vector<ContactRecord<Dim>> RunFolder<Dim>::read_contacts(const fs::path& fi
   std::vector<ContactRecord<Dim>> contacts;
   while (csv.next()) {
     ContactRecord<Dim> contact;
-    contact.i = place_of(snapshot.frame.id, csv.number(i));
-    contact.j = place_of(snapshot.frame.id, csv.number(j));
-    contact.wall = static_cast<int>(csv.number(wall));
-    if (contact.wall >= static_cast<int>(snapshot.walls.size())) continue;
+    contact.i = place_of(snapshot.frame.id, csv.whole(i));
+    contact.j = place_of(snapshot.frame.id, csv.whole(j));
+    contact.wall = static_cast<int>(csv.whole(wall));
     contact.overlap = csv.number(overlap);
     for (int d = 0; d < Dim; ++d) {
       contact.normal[d] = csv.number(normal[static_cast<std::size_t>(d)]);

@@ -10,6 +10,7 @@
 #include <lagrain/frame.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -47,6 +48,8 @@ class CsvFile {
   bool next();
   /// A cell of this row; one that is empty is NaN. @throws SceneError if it is no number
   double number(std::size_t column) const;
+  /// The same of a whole number. @throws SceneError if it is none
+  std::int64_t whole(std::size_t column) const;
   /// A cell of this row.
   std::string word(std::size_t column) const { return std::string(rows_.cells()[column]); }
 

@@ -510,17 +510,10 @@ class Placer {
 }  // namespace
 
 template <int Dim>
-Placement<Dim> place_grains(const Scene<Dim>& scene) {
-  return place_grains(scene, PlacementWatch{});
-}
-
-template <int Dim>
 Placement<Dim> place_grains(const Scene<Dim>& scene, const PlacementWatch& watch) {
   return Placer<Dim>(scene, watch).place();
 }
 
-template Placement<2> place_grains<2>(const Scene<2>&);
-template Placement<3> place_grains<3>(const Scene<3>&);
 template Placement<2> place_grains<2>(const Scene<2>&, const PlacementWatch&);
 template Placement<3> place_grains<3>(const Scene<3>&, const PlacementWatch&);
 

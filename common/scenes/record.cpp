@@ -373,7 +373,7 @@ int checkpoint_dimension(const Checkpoint& checkpoint) {
 
 template <int Dim>
 std::unique_ptr<Run<Dim>> resume_run(const Checkpoint& checkpoint, std::optional<double> until,
-                                     int threads) {
+                                     int threads, const PlacementWatch& watch) {
   const std::string name = checkpoint.file.string();
   Scene<Dim> scene = parse_scene<Dim>(checkpoint.state.get<std::string>("record/scene"), name);
   for (GrainFile<Dim>& grains : scene.grain_files) {
@@ -386,7 +386,7 @@ std::unique_ptr<Run<Dim>> resume_run(const Checkpoint& checkpoint, std::optional
     if (!(output.series_every > 0)) output.series_every = scene.duration / 1000;
     scene.duration = *until;
   }
-  auto run = make_run(scene, threads);
+  auto run = make_run(scene, threads, watch);
   try {
     run->persist(StateVisitor::restoring(checkpoint.state).in("run"));
   } catch (const SceneError& error) {
@@ -416,8 +416,10 @@ template OutputEstimate estimate_output<2>(const Run<2>&);
 template OutputEstimate estimate_output<3>(const Run<3>&);
 template bool record<2>(Run<2>&, const RecordOptions&);
 template bool record<3>(Run<3>&, const RecordOptions&);
-template std::unique_ptr<Run<2>> resume_run<2>(const Checkpoint&, std::optional<double>, int);
-template std::unique_ptr<Run<3>> resume_run<3>(const Checkpoint&, std::optional<double>, int);
+template std::unique_ptr<Run<2>> resume_run<2>(const Checkpoint&, std::optional<double>, int,
+                                               const PlacementWatch&);
+template std::unique_ptr<Run<3>> resume_run<3>(const Checkpoint&, std::optional<double>, int,
+                                               const PlacementWatch&);
 template bool record_on<2>(Run<2>&, const Checkpoint&, RecordOptions);
 template bool record_on<3>(Run<3>&, const Checkpoint&, RecordOptions);
 

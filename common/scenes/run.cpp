@@ -217,11 +217,6 @@ std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, AnyNeighbourhood<Dim
 }
 
 template <int Dim>
-std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, int threads) {
-  return make_run(scene, threads, PlacementWatch{});
-}
-
-template <int Dim>
 std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, int threads,
                                    const PlacementWatch& watch) {
   auto run = make_run(scene, neighbourhood_of(scene), watch);
@@ -489,8 +484,6 @@ template class Run<2>;
 template class Run<3>;
 template std::unique_ptr<Run<2>> make_run<2>(const Scene<2>&, AnyNeighbourhood<2>);
 template std::unique_ptr<Run<3>> make_run<3>(const Scene<3>&, AnyNeighbourhood<3>);
-template std::unique_ptr<Run<2>> make_run<2>(const Scene<2>&, int);
-template std::unique_ptr<Run<3>> make_run<3>(const Scene<3>&, int);
 template std::unique_ptr<Run<2>> make_run<2>(const Scene<2>&, int, const PlacementWatch&);
 template std::unique_ptr<Run<3>> make_run<3>(const Scene<3>&, int, const PlacementWatch&);
 template std::string explain<2>(const Run<2>&);

@@ -1183,15 +1183,8 @@ Scene<Dim> parse(const toml::table& root, const std::string& name,
 
 }  // namespace
 
-int scene_dimension(const std::filesystem::path& file) { return scene_dimension(file, {}); }
-
 int scene_dimension(const std::filesystem::path& file, const Settings& settings) {
   return dimension_of(table_of(read_file(file), called(file), settings), called(file));
-}
-
-template <int Dim>
-Scene<Dim> parse_scene(std::string_view text, const std::string& name) {
-  return parse_scene<Dim>(text, name, {});
 }
 
 template <int Dim>
@@ -1200,22 +1193,13 @@ Scene<Dim> parse_scene(std::string_view text, const std::string& name, const Set
 }
 
 template <int Dim>
-Scene<Dim> read_scene(const std::filesystem::path& file) {
-  return read_scene<Dim>(file, {});
-}
-
-template <int Dim>
 Scene<Dim> read_scene(const std::filesystem::path& file, const Settings& settings) {
   return parse<Dim>(table_of(read_file(file), called(file), settings), called(file),
                     file.parent_path());
 }
 
-template Scene<2> read_scene<2>(const std::filesystem::path&);
-template Scene<3> read_scene<3>(const std::filesystem::path&);
 template Scene<2> read_scene<2>(const std::filesystem::path&, const Settings&);
 template Scene<3> read_scene<3>(const std::filesystem::path&, const Settings&);
-template Scene<2> parse_scene<2>(std::string_view, const std::string&);
-template Scene<3> parse_scene<3>(std::string_view, const std::string&);
 template Scene<2> parse_scene<2>(std::string_view, const std::string&, const Settings&);
 template Scene<3> parse_scene<3>(std::string_view, const std::string&, const Settings&);
 

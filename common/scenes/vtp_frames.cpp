@@ -5,8 +5,7 @@
 #include "frame_formats.hpp"
 
 #include <lagrain/numbers.hpp>
-
-#include "wall_shapes.hpp"
+#include <lagrain/wall_shapes.hpp>
 
 #include <zlib.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "wall_shapes.hpp"
+#include <lagrain/wall_shapes.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <variant>
 
-namespace lagrain::detail {
+namespace lagrain {
 namespace {
 
 template <int Dim>
@@ -20,21 +20,6 @@ Vec<Dim> on_circle(const Vec<Dim>& centre, const Vec<Dim>& u, const Vec<Dim>& v,
                    int k) {
   const double angle = 2 * std::numbers::pi * k / kFacets;
   return centre + radius * (std::cos(angle) * u + std::sin(angle) * v);
-}
-
-/// What of a convex polygon lies on the side of a plane that its normal points to.
-std::vector<Vec<3>> clipped(const std::vector<Vec<3>>& polygon, const Vec<3>& normal,
-                            const Vec<3>& point) {
-  std::vector<Vec<3>> rest;
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Vec<3>&a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
-    const double height_a = normal.dot(a - point), height_b = normal.dot(b - point);
-    if (height_a >= 0) rest.push_back(a);
-    if ((height_a < 0) != (height_b < 0)) {
-      rest.push_back(a + height_a / (height_a - height_b) * (b - a));
-    }
-  }
-  return rest;
 }
 
 /// The part of the plane or line through a point that lies in a box.
@@ -157,6 +142,21 @@ Facets<3> piece_facets(const Frustum& side) {
 
 }  // namespace
 
+std::vector<Vec<3>> clipped(const std::vector<Vec<3>>& polygon, const Vec<3>& normal,
+                            const Vec<3>& point, double slack) {
+  std::vector<Vec<3>> rest;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec<3>&a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
+    const double height_a = normal.dot(a - point) + slack;
+    const double height_b = normal.dot(b - point) + slack;
+    if (height_a >= 0) rest.push_back(a);
+    if ((height_a < 0) != (height_b < 0)) {
+      rest.push_back(a + height_a / (height_a - height_b) * (b - a));
+    }
+  }
+  return rest;
+}
+
 template <int Dim>
 std::vector<std::vector<Vec<Dim>>> facets_of(const Wall<Dim>& wall,
                                              const Eigen::AlignedBox<double, Dim>& box) {
@@ -184,4 +184,4 @@ template std::vector<std::vector<Vec<2>>> facets_of<2>(const Wall<2>&,
 template std::vector<std::vector<Vec<3>>> facets_of<3>(const Wall<3>&,
                                                        const Eigen::AlignedBox<double, 3>&);
 
-}  // namespace lagrain::detail
+}  // namespace lagrain

@@ -22,6 +22,7 @@
 #include <memory>
 #include <optional>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -418,6 +419,14 @@ TEST_SUITE("checkpoints") {
     REQUIRE(resume<2>(parted.path, 0.06));
     check_same(longer.path, parted.path);
     CHECK_THROWS_AS(resume<2>(parted.path, 0.05), SceneError);
+  }
+
+  TEST_CASE("whoever resumes a run can end it while grains are placed") {
+    const Folder folder;
+    REQUIRE(record(*run_of<2>(with(kPlane, "elastic", "triangulation")), into(folder.path)));
+    const Checkpoint checkpoint = read_checkpoint(folder.path);
+    const auto stop = [](std::int64_t, std::int64_t) { throw std::runtime_error("stop"); };
+    CHECK_THROWS_AS(resume_run<2>(checkpoint, {}, 1, stop), std::runtime_error);
   }
 
   TEST_CASE("files that were changed are refused") {

@@ -80,10 +80,11 @@ int checkpoint_dimension(const Checkpoint& checkpoint);
 /// Makes a run again, as it was at its checkpoint.
 /// @param until    the new end [s]; none: the scene's own
 /// @param threads  as for make_run
+/// @param watch    as for make_run: grains are placed before they take their state
 /// @throws SceneError if the checkpoint holds no such run, or the new end has passed
 template <int Dim>
 std::unique_ptr<Run<Dim>> resume_run(const Checkpoint& checkpoint, std::optional<double> until = {},
-                                     int threads = 0);
+                                     int threads = 0, const PlacementWatch& watch = {});
 
 /// Goes on recording in the folder of the checkpoint, with the run that was made from it. What had
 /// been written there later is written anew, so that series and frames are those of a run that was

@@ -57,10 +57,6 @@ struct Placement {
 /// such run to start from, or its grains are of a material that the scene does not name, or do not
 /// fit between the scene's walls
 template <int Dim>
-Placement<Dim> place_grains(const Scene<Dim>& scene);
-
-/// The same while somebody watches.
-template <int Dim>
-Placement<Dim> place_grains(const Scene<Dim>& scene, const PlacementWatch& watch);
+Placement<Dim> place_grains(const Scene<Dim>& scene, const PlacementWatch& watch = {});
 
 }  // namespace lagrain

@@ -186,16 +186,13 @@ class Run {
 
 /// Builds the simulation that a scene names: places the grains, chooses the types once, evaluates
 /// the forces at time 0.
-/// @param threads  that share its steps; 0: as many as pay
+/// @param threads  at most so many share its steps; 0: all cores, if there are many grains
+/// @param watch    the grains being placed
 /// @throws SceneError if the grains do not fit or overlap, or the time step is not safe;
 /// ContractError if a scene that no file was read for has a number that is NaN or out of range
 template <int Dim>
-std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, int threads = 0);
-
-/// The same while somebody watches the grains being placed.
-template <int Dim>
-std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, int threads,
-                                   const PlacementWatch& watch);
+std::unique_ptr<Run<Dim>> make_run(const Scene<Dim>& scene, int threads = 0,
+                                   const PlacementWatch& watch = {});
 
 /// The same on one thread with a neighbourhood of one's own in place of the one that it names.
 template <int Dim>

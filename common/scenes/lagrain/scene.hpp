@@ -261,28 +261,22 @@ struct Scene {
 /// tables is named by place or by name: "fill[0].count=50", "wall[floor].point=[0, 0]".
 using Settings = std::vector<std::string>;
 
-/// The dimension that a scene file names.
+/// The dimension that a scene file, or a setting beside it, names.
 /// @throws SceneError if the file cannot be read, is not TOML, or names none
-int scene_dimension(const std::filesystem::path& file);
-/// The same with settings.
-int scene_dimension(const std::filesystem::path& file, const Settings& settings);
+int scene_dimension(const std::filesystem::path& file, const Settings& settings = {});
 
 /// Reads a scene file; every number is checked, the grains are not placed yet. Paths in it begin in
 /// its folder.
+/// @param settings  which messages name in place of file and line
 /// @throws SceneError: one sentence with file, line, key, what was expected and what was found
 template <int Dim>
-Scene<Dim> read_scene(const std::filesystem::path& file);
-/// The same with settings, which messages name in place of file and line.
-template <int Dim>
-Scene<Dim> read_scene(const std::filesystem::path& file, const Settings& settings);
+Scene<Dim> read_scene(const std::filesystem::path& file, const Settings& settings = {});
 
 /// The same from text; `name` stands for the file in messages, and paths begin in the program's
 /// working folder.
 template <int Dim>
-Scene<Dim> parse_scene(std::string_view text, const std::string& name);
-/// The same with settings.
-template <int Dim>
-Scene<Dim> parse_scene(std::string_view text, const std::string& name, const Settings& settings);
+Scene<Dim> parse_scene(std::string_view text, const std::string& name,
+                       const Settings& settings = {});
 
 /// The scene as TOML with every default filled in. Reading it back gives the same numbers, bit
 /// for bit.
