@@ -7,6 +7,7 @@
 #include <lagrain/check.hpp>
 #include <lagrain/numbers.hpp>
 #include <lagrain/units.hpp>
+#include <lagrain/words.hpp>
 
 #ifdef LAGRAIN_WITH_RENDER
 #include "own_picture.hpp"
@@ -64,11 +65,14 @@ template <class Value>
 Value chosen(const std::string& flag, const std::string& word,
              const std::vector<std::pair<std::string, Value>>& known) {
   std::string list;
+  std::vector<std::string> names;
   for (const auto& [name, value] : known) {
     if (name == word) return value;
     list += (list.empty() ? "" : ", ") + name;
+    names.push_back(name);
   }
-  throw SceneError(flag + ": there is no \"" + word + "\"; expected one of " + list);
+  throw SceneError(flag + ": there is no " + shown(word) + suggestion(word, names) +
+                   "; expected one of " + list);
 }
 
 double quantity(const std::string& flag, const std::string& text, Unit unit,

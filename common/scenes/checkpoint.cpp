@@ -252,7 +252,11 @@ Checkpoint read_checkpoint(const fs::path& folder) {
     }
   }
   if (!trouble.empty()) throw SceneError(trouble);
-  throw SceneError(folder.string() + ": there is no checkpoint (" + kLast + ") in this folder");
+  const std::string wanted = std::string("checkpoint (") + kLast + ")";
+  std::error_code ignored;
+  throw SceneError(folder.string() + (fs::is_directory(folder, ignored)
+                                          ? ": there is no " + wanted + " in this folder"
+                                          : ": there is no such folder, and so no " + wanted));
 }
 
 }  // namespace lagrain

@@ -207,11 +207,17 @@ class StartReader {
 
 template <int Dim>
 Start<Dim> read_start(const Scene<Dim>& scene) {
-  const Checkpoint checkpoint = open(*scene.start);
+  const auto located = [&](const std::string& message) { return scene.error("start", message); };
+  Checkpoint checkpoint;
+  try {
+    checkpoint = open(*scene.start);
+  } catch (const SceneError& error) {
+    throw located(error.what());
+  }
   try {
     return StartReader<Dim>(scene, checkpoint).read();
   } catch (const SceneError& error) {
-    throw scene.error("start", checkpoint.file.string() + ": " + error.what());
+    throw located(checkpoint.file.string() + ": " + error.what());
   }
 }
 

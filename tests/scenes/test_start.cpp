@@ -294,6 +294,8 @@ high = [0.1, 0.02]
     const std::string nowhere = refusal(text + started_from("no/such/run"));
     CHECK(nowhere.find("no/such/run") != std::string::npos);
     CHECK(nowhere.find("no checkpoint") != std::string::npos);
+    CHECK(nowhere.find("no such folder") != std::string::npos);
+    CHECK(nowhere.find("s.toml:") == 0);
     CHECK(refusal(text + started_from(empty.path)).find("no checkpoint") != std::string::npos);
     const std::string file = refusal(text + started_from(bed.path / "series.csv"));
     CHECK(file.find("it is no checkpoint") != std::string::npos);
