@@ -50,7 +50,10 @@ class Simulation : public GrainSystem<Dim, Law, N> {
 
  public:
   using System::needs;
-  using typename System::PairMemories, typename System::WallMemories;
+  /// What contacts of two grains remember.
+  using PairMemories = typename System::PairMemories;
+  /// What contacts with walls remember.
+  using WallMemories = typename System::WallMemories;
 
   /// Evaluates the forces at time 0.
   /// @throws ContractError if the time step is not safe (the message names the safe one), a

@@ -60,8 +60,11 @@ class ThreadTeam {
   ThreadTeam(const ThreadTeam& other);
   ThreadTeam& operator=(const ThreadTeam& other);
   /// @}
+  /// Who is moved from can only be assigned to, or end.
+  /// @{
   ThreadTeam(ThreadTeam&& other) noexcept;
   ThreadTeam& operator=(ThreadTeam&& other) noexcept;
+  /// @}
 
   /// Threads that the last round was shared by.
   int size() const;

@@ -32,6 +32,7 @@ inline std::pair<std::string_view, std::string_view> name_and_unit(std::string_v
 /// within it is doubled). Empty lines are passed over.
 class CsvRows {
  public:
+  /// @param text  has to live as long as the rows are read
   explicit CsvRows(std::string_view text) : text_(text) {
     constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
     if (text_.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();

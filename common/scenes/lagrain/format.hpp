@@ -45,6 +45,7 @@ std::vector<std::unique_ptr<FrameFormat<Dim>>> make_formats(const OutputPlan& pl
 template <int Dim>
 class RunTables {
  public:
+  /// @param folder  exists; nothing is opened yet
   explicit RunTables(const std::filesystem::path& folder)
       : series_file_(folder / "series.csv"), frames_file_(folder / "frames.csv") {}
 
