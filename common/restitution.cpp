@@ -29,6 +29,19 @@ double clamped_restitution(double damping_ratio) {
   return std::exp(-damping_ratio * clamped_contact_time(damping_ratio));
 }
 
+namespace {
+
+/// Rounds to 40 significant bits, which are the same with every C library: their exp and acos
+/// differ by a few units in the last of 53.
+double with_bits_of_any_library(double number) {
+  constexpr int kBits = 40;
+  int exponent = 0;
+  const double fraction = std::frexp(number, &exponent);
+  return std::ldexp(std::round(std::ldexp(fraction, kBits)), exponent - kBits);
+}
+
+}  // namespace
+
 double damping_ratio_for(double restitution) {
   LAGRAIN_EXPECTS(restitution > 0 && restitution <= 1,
                   "restitution " + std::to_string(restitution) + " is out of range");
@@ -41,7 +54,7 @@ double damping_ratio_for(double restitution) {
        middle = 0.5 * (low + high)) {
     (clamped_restitution(middle) > restitution ? low : high) = middle;
   }
-  return high;
+  return with_bits_of_any_library(high);
 }
 
 }  // namespace lagrain

@@ -263,11 +263,12 @@ double largest_rate(const Upright&) { return 0; }
 template <int Dim>
 bool is_round(const Sheet<Dim>& sheet, const SpinVec<Dim>& axis) {
   if constexpr (Dim == 3) {
-    return std::ranges::all_of(sheet.pieces(), [&](const WallPiece<3>& piece) {
+    const auto is_round_piece = [&](const WallPiece<3>& piece) {
       const auto* frustum = std::get_if<Frustum>(&piece);
       return frustum && frustum->axis.cross(axis).norm() < kSeam &&
              frustum->base.cross(axis).norm() < kSeam * frustum->size();
-    });
+    };
+    return std::all_of(sheet.pieces().begin(), sheet.pieces().end(), is_round_piece);
   }
   return false;
 }
@@ -292,7 +293,8 @@ std::string Wall<Dim>::defect() const {
           piece);
     };
     if (!pieces()) return "it has one side; only what is thin is solid from its front or both";
-    if (!std::ranges::all_of(pieces()->pieces(), has_front)) {
+    const auto& all = pieces()->pieces();
+    if (!std::all_of(all.begin(), all.end(), has_front)) {
       return Dim == 2 ? "an arc is solid from both sides; give points"
                       : "a round piece is solid from both sides; give plates";
     }
@@ -412,8 +414,9 @@ void note_encounter(const Wall<Dim>& wall, std::span<const WallPair> pieces, con
   }
   if (most < 0) return;
   const int slot = pieces.front().i;
-  const auto before = std::ranges::lower_bound(
-      wall.encounters, slot, {}, [](const auto& encounter) { return encounter.grain; });
+  const auto before =
+      std::lower_bound(wall.encounters.begin(), wall.encounters.end(), slot,
+                       [](const auto& encounter, int grain) { return encounter.grain < grain; });
   const bool goes_on = before != wall.encounters.end() && before->grain == slot;
   now.push_back({slot, goes_on ? before->passes : passes});
 }

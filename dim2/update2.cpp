@@ -384,7 +384,8 @@ bool Triangulation<2>::extract_inverted(std::span<const int> moved, bool sweep) 
       may_drop = false;
       close_hull(first, before_.data());
     } else {
-      choose_cover(std::span<const int>(hard, inverted_.end()));
+      const auto easy = static_cast<std::size_t>(hard - inverted_.begin());
+      choose_cover(std::span<const int>(inverted_).subspan(easy));
     }
     if (!take_out_cover()) return false;
     list_again(first);

@@ -4,6 +4,7 @@
 /// The contacts of a list computed with the widest instructions that the machine has, chosen at
 /// run time.
 
+#include <lagrain/check.hpp>
 #include <lagrain/contact_scene.hpp>
 #include <lagrain/contact_sweep.hpp>
 #include <lagrain/lanes.hpp>
@@ -92,17 +93,10 @@ struct Sweeps {
 /// Attribute of a sweep: all that it calls is compiled into it.
 #define LAGRAIN_INLINED gnu::flatten
 #endif
-#if defined(__x86_64__)
 /// Attributes of a sweep for AVX2.
 #define LAGRAIN_FOR_AVX2 [[gnu::target("avx2"), LAGRAIN_INLINED]]
 /// Attributes of a sweep for AVX-512.
 #define LAGRAIN_FOR_AVX512 [[gnu::target("avx512f,avx512dq,avx512vl"), LAGRAIN_INLINED]]
-#else
-/// Attributes of a sweep for AVX2.
-#define LAGRAIN_FOR_AVX2
-/// Attributes of a sweep for AVX-512.
-#define LAGRAIN_FOR_AVX512
-#endif
 /// Defines the sweeps for one instruction set.
 #define LAGRAIN_COMPILED_SWEEPS(Name, Attributes, Real)                                            \
   template <int Dim, class Law>                                                                    \
@@ -120,8 +114,10 @@ struct Sweeps {
     }                                                                                              \
   }
 LAGRAIN_COMPILED_SWEEPS(ScalarSweeps, [[LAGRAIN_INLINED]], double);
+#if defined(__x86_64__)
 LAGRAIN_COMPILED_SWEEPS(Avx2Sweeps, LAGRAIN_FOR_AVX2, Lanes<4>);
 LAGRAIN_COMPILED_SWEEPS(Avx512Sweeps, LAGRAIN_FOR_AVX512, Lanes<8>);
+#endif
 #undef LAGRAIN_COMPILED_SWEEPS
 #undef LAGRAIN_INLINED
 #undef LAGRAIN_FOR_AVX2
@@ -139,13 +135,20 @@ ContactKernel<Dim, Law>::ContactKernel(InstructionSet set, bool one_law) {
     case InstructionSet::scalar:
       choose(detail::ScalarSweeps<Dim, Law>{});
       return;
+#if defined(__x86_64__)
     case InstructionSet::avx2:
       choose(detail::Avx2Sweeps<Dim, Law>{});
       return;
     case InstructionSet::avx512:
       choose(detail::Avx512Sweeps<Dim, Law>{});
       return;
+#else
+    case InstructionSet::avx2:
+    case InstructionSet::avx512:
+      break;
+#endif
   }
+  LAGRAIN_EXPECTS(false, "this processor does not have the instruction set");
 }
 
 }  // namespace lagrain

@@ -159,8 +159,10 @@ class EdgeList {
     std::vector<Edge> told, made;
     for_each_new([&](int i, int j) { told.push_back({i, j}); });
     std::sort(told.begin(), told.end());
-    std::ranges::set_difference(found.edges_, *before_, std::back_inserter(made));
-    if (!std::ranges::includes(told, made)) return "an edge is not told to be new";
+    std::set_difference(found.edges_.begin(), found.edges_.end(), before_->begin(), before_->end(),
+                        std::back_inserter(made));
+    if (!std::includes(told.begin(), told.end(), made.begin(), made.end()))
+      return "an edge is not told to be new";
     return {};
   }
 

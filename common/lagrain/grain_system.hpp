@@ -472,7 +472,8 @@ class GrainSystem {
     for (Wall<Dim>& wall : walls_) {
       for (auto& encounter : wall.encounters) encounter.grain = slot_of[index(encounter.grain)];
       std::erase_if(wall.encounters, [](const auto& encounter) { return encounter.grain < 0; });
-      std::ranges::sort(wall.encounters, {}, [](const auto& encounter) { return encounter.grain; });
+      std::sort(wall.encounters.begin(), wall.encounters.end(),
+                [](const auto& a, const auto& b) { return a.grain < b.grain; });
     }
   }
 

@@ -13,7 +13,6 @@
 #include <lagrain/walls.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -373,7 +372,7 @@ class NearList {
         bool remembers = false;
         if constexpr (Memory::kReals > 0) {
           for (int r = 0; r < Memory::kReals; ++r) {
-            remembers = remembers || std::bit_cast<std::uint64_t>(memory[r]) != 0;
+            remembers = remembers || memory[r] != 0 || std::signbit(memory[r]);
           }
         }
         if (remembers) entries.emplace_back(table.pairs()[k], memory);
@@ -517,19 +516,22 @@ class NearList {
       const auto inside = [&](int slot) {
         return block.first_slot <= slot && slot < block.end_slot;
       };
+      const auto all_of = [](const auto& pairs, const auto& is) {
+        return std::all_of(pairs.begin(), pairs.end(), is);
+      };
       const bool sound =
           block.first_slot == first && first == static_cast<int>(b) * block_size_ &&
           inside(first) && block.end_slot <= size_ && block.within.sound() &&
           block.across.sound() && block.walls.sound() &&
-          std::ranges::all_of(block.within.pairs(),
-                              [&](const Pair& pair) {
-                                return pair.i < pair.j && inside(pair.i) && inside(pair.j);
-                              }) &&
-          std::ranges::all_of(block.across.pairs(),
-                              [&](const Pair& pair) {
-                                return inside(pair.i) && pair.j >= block.end_slot && pair.j < size_;
-                              }) &&
-          std::ranges::all_of(block.walls.pairs(), [&](const WallPair& pair) {
+          all_of(block.within.pairs(),
+                 [&](const Pair& pair) {
+                   return pair.i < pair.j && inside(pair.i) && inside(pair.j);
+                 }) &&
+          all_of(block.across.pairs(),
+                 [&](const Pair& pair) {
+                   return inside(pair.i) && pair.j >= block.end_slot && pair.j < size_;
+                 }) &&
+          all_of(block.walls.pairs(), [&](const WallPair& pair) {
             return inside(pair.i) && pair.wall >= 0 && index(pair.wall) < listed_walls_.size() &&
                    pair.piece >= 0 && pair.piece < listed_walls_[index(pair.wall)].piece_count();
           });

@@ -12,7 +12,8 @@ namespace lagrain {
 /// attract at the end of the contact and the restitution would be exp(-pi zeta / sqrt(1 - zeta^2)).
 double clamped_restitution(double damping_ratio);
 
-/// The damping ratio [-] that gives a restitution in (0, 1]: the inverse of clamped_restitution.
+/// The damping ratio [-] that gives a restitution in (0, 1]: the inverse of clamped_restitution,
+/// to 40 bits, so that a scene means the same with every C library.
 /// @throws ContractError outside (0, 1].
 double damping_ratio_for(double restitution);
 

@@ -50,6 +50,14 @@ class TriangulationNeighbourhood {
   const T& triangulation() const { return sites_.t; }
   const TriangulationCost& cost() const { return sites_.cost; }  ///< since the start
   const Laziness& laziness() const { return laziness_; }         ///< what was chosen
+  /// Where T believes grain i to be [m], in the frame of the grains.
+  Vec<Dim> reference(int i) const { return sites_.reference.col(i) + sites_.drift; }
+  /// How far grain i may be from there before T has to know [m].
+  double skin(int i) const { return sites_.skin[i]; }
+  /// How far the frame of T's sites has gone with the grains [m].
+  const Vec<Dim>& drift() const { return sites_.drift; }
+  /// Grains around which pairs are searched, because T cannot vouch for their edges; in order.
+  std::span<const int> uncertain() const { return follower_.uncertain(); }
   /// Without the certificate, or a T that follows, pairs may be missing.
   bool keeps_promise() const { return laziness_.certify && laziness_.follow; }
 

@@ -3,18 +3,31 @@
 /// @file
 /// Private to the predicates of dim2 and dim3: the sign of a polynomial in doubles, exactly.
 
-#include <CGAL/Gmpzf.h>
+// WebAssembly rounds to nearest alone. CGAL's intervals would try to change that in vain, and signs
+// would be wrong without a word.
+#if defined(__wasm__) && !defined(CGAL_ALWAYS_ROUND_TO_NEAREST)
+#error "define CGAL_ALWAYS_ROUND_TO_NEAREST: here intervals cannot change the rounding mode"
+#endif
+
 #include <CGAL/Interval_nt.h>
+#include <CGAL/config.h>
+#ifdef CGAL_USE_GMP
+#include <CGAL/Gmpzf.h>
 #include <CGAL/Mpzf.h>
+#else
+#include <CGAL/MP_Float.h>
+#endif
 
 namespace lagrain::detail {
 
 /// Multiprecision floats that know no rounding. Mpzf keeps its digits in place and takes a quarter
-/// of the time, where CGAL offers it.
+/// of the time, where CGAL offers it. MP_Float takes twenty times as long, but needs no library.
 #ifdef CGAL_HAS_MPZF
 using ExactNumber = CGAL::Mpzf;
-#else
+#elif defined(CGAL_USE_GMP)
 using ExactNumber = CGAL::Gmpzf;
+#else
+using ExactNumber = CGAL::MP_Float;
 #endif
 
 /// Sign of `Formula::of<T>(arguments...)`, where T is any number type made from a double.

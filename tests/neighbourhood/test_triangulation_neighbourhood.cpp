@@ -102,6 +102,25 @@ TEST_SUITE("triangulation_neighbourhood") {
     }
   }
 
+  TEST_CASE_TEMPLATE("every grain is within its skin of its reference, in a frame that drifts", S,
+                     Space<2>, Space<3>) {
+    constexpr int Dim = S::Dim;
+    auto sim = start<Dim>(drifting<Dim>(kMany<Dim>, 1), make_law<FrictionalSpring>(kGravel),
+                          Triangulated<Dim>(Laziness{.leap = false}));
+
+    audited<Dim>(sim, 2000);
+
+    const auto& known = sim.neighbourhood();
+    CHECK(known.drift().norm() > sim.grains().radius.maxCoeff());
+    CHECK(known.uncertain().empty());
+    for (int i = 0; i < sim.grains().size(); ++i) {
+      const Vec<Dim> reference = known.reference(i);
+      CHECK((sim.grains().position.col(i) - reference).norm() < known.skin(i));
+      CHECK((reference - known.drift() - known.triangulation().site(i)).norm() <
+            1e-12 * known.drift().norm());
+    }
+  }
+
   TEST_CASE_TEMPLATE("no contact is missed with sizes 1 : 1000, nor around a bullet", S, Space<2>,
                      Space<3>) {
     constexpr int Dim = S::Dim;
