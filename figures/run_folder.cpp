@@ -146,14 +146,6 @@ RunFolder<Dim>::RunFolder(fs::path folder)
       if (fs::exists(listed.file, ignored)) frames_.push_back(std::move(listed));
     }
   }
-  if (fs::exists(folder_ / "last.csv", ignored)) {
-    // Its time is not kept. The series ends there or not long before.
-    CsvFile series(folder_ / "series.csv");
-    const std::size_t time = series.column("time");
-    Listed last{folder_ / "last.csv", {}, "the last good state", 0, 0};
-    while (series.next()) last.time = series.number(time);
-    broken_ = std::move(last);
-  }
   try {
     checkpoint_ = read_checkpoint(folder_);
   } catch (const SceneError&) {
@@ -180,7 +172,6 @@ Snapshot<Dim> RunFolder<Dim>::nearest(std::optional<double> time, Wish wish) con
     if (best == nullptr || distance(listed.time) <= distance(best->time)) best = &listed;
   };
   for (const Listed& listed : frames_) consider(listed);
-  if (broken_) consider(*broken_);
   double kept = kNever;  // when the checkpoint was taken
   if (checkpoint_) {
     const auto& steps = checkpoint_->state.template get<NumberTable<std::int64_t>>("run/step");

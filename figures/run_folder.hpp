@@ -110,7 +110,6 @@ class RunFolder {
   std::filesystem::path folder_;
   Scene<Dim> scene_;
   std::vector<Listed> frames_;
-  std::optional<Listed> broken_;  // last.csv
   mutable std::optional<Checkpoint> checkpoint_;
   mutable std::unique_ptr<Run<Dim>> run_;
 };

@@ -54,6 +54,12 @@ std::vector<std::unique_ptr<FrameFormat<Dim>>> make_formats(const OutputPlan& pl
       case OutputFormat::vtp:
         formats.push_back(std::make_unique<detail::VtpFrames<Dim>>(folder));
         break;
+      case OutputFormat::cells:
+        formats.push_back(std::make_unique<detail::CellFrames<Dim>>(folder));
+        break;
+      case OutputFormat::hdf5:
+        formats.push_back(std::make_unique<detail::Hdf5Frames<Dim>>(folder));
+        break;
       case OutputFormat::xyz:
         formats.push_back(std::make_unique<detail::XyzFrames<Dim>>(folder));
         break;

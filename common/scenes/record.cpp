@@ -146,8 +146,10 @@ class Recorder {
       const fs::path kept = options_.folder / kLastGood;
       write_file(kept, frame_csv(run_, last_good_));
       write_summary(std::string("broke off: ") + error.what(), false);
+      std::string where = kept.string();
+      if (go_back()) where += ", and whole in " + checkpoint_file(options_.folder).string();
       throw SimulationError(std::string(error.what()) + "; the state at t = " +
-                            rounded(last_good_.time, 6) + " s is kept in " + kept.string());
+                            rounded(last_good_.time, 6) + " s is kept in " + where);
     }
     // A run that is resumed later shall not see the frame that ends this one.
     if (stopped) write_checkpoint();
@@ -258,6 +260,8 @@ class Recorder {
       line("largest residual", rounded(largest_.residual) + " J" + share);
     } else {
       line("steps", std::to_string(run_.steps()));
+      line("last good state",
+           std::string(kLastGood) + ", at " + rounded(last_good_.time, 6) + " s");
     }
     const double spent = seconds_spent();
     line("wall-clock time", rounded(spent) + " s, " +
@@ -296,6 +300,24 @@ class Recorder {
     lagrain::write_checkpoint(options_.folder, state);
     checkpoint_at_ = Clock::now();
     checkpoint_took_ = seconds_since(begin);
+  }
+
+  /// Takes the run back to the last good state, and writes a checkpoint there: from the last
+  /// checkpoint the same steps lead to the same state, and cost nothing while all goes well.
+  /// @return whether it has got there; the user may stop it
+  bool go_back() {
+    try {
+      const Checkpoint last = read_checkpoint(options_.folder);
+      run_.persist(StateVisitor::restoring(last.state).in("run"));
+      while (run_.steps() < last_good_.step) {
+        if (options_.stop && options_.stop()) return false;
+        run_.step(std::min(kStepsBetweenCopies, last_good_.step - run_.steps()));
+      }
+      write_checkpoint();
+    } catch (const SceneError&) {
+      return false;  // the folder is gone, or full
+    }
+    return true;
   }
 
   /// Of the steps that are made [-].

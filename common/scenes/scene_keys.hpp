@@ -191,9 +191,10 @@ inline constexpr std::array kNeighbourhoodWords{
 inline constexpr std::array kArrangementWords{Word<Arrangement>{"lattice", Arrangement::lattice},
                                               Word<Arrangement>{"random", Arrangement::random}};
 
-inline constexpr std::array kFormatWords{Word<OutputFormat>{"csv", OutputFormat::csv},
-                                         Word<OutputFormat>{"vtp", OutputFormat::vtp},
-                                         Word<OutputFormat>{"xyz", OutputFormat::xyz}};
+inline constexpr std::array kFormatWords{
+    Word<OutputFormat>{"csv", OutputFormat::csv}, Word<OutputFormat>{"vtp", OutputFormat::vtp},
+    Word<OutputFormat>{"cells", OutputFormat::cells}, Word<OutputFormat>{"xyz", OutputFormat::xyz},
+    Word<OutputFormat>{"hdf5", OutputFormat::hdf5}};
 /// The one value of `time`.
 inline constexpr std::string_view kLastState = "last";
 inline constexpr std::array kShareWords{Word<Share>{"number", Share::number},

@@ -1,140 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Frames as PolyData of VTK in XML, for ParaView and OVITO. A file has a head that says which
-// arrays there are, and the arrays behind it, raw and compressed by zlib in blocks ("VTK XML
-// Formats" of the VTK documentation). A file .pvd is ParaView's list of files and times.
+// Frames as PolyData of VTK. A file .pvd is ParaView's list of files and times.
 #include "frame_formats.hpp"
+#include "poly_data.hpp"
 
+#include <lagrain/laguerre2.hpp>
+#include <lagrain/laguerre3.hpp>
 #include <lagrain/numbers.hpp>
 #include <lagrain/wall_shapes.hpp>
 
-#include <zlib.h>
-
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <string>
 #include <string_view>
 #include <system_error>
-#include <type_traits>
 
 namespace lagrain::detail {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::array<std::string_view, 3> kKinds{"grains", "contacts", "walls"};
-
-void add_bytes(std::string& to, std::uint64_t number) {
-  to.append(reinterpret_cast<const char*>(&number), sizeof number);
-}
-
-/// Bytes as VTK stores them: how many blocks there are, how long each is and the last one is, how
-/// long each is compressed, and the blocks.
-std::string compressed(std::string_view bytes) {
-  constexpr std::size_t kBlock = std::size_t{1} << 20;
-  const std::size_t blocks = (bytes.size() + kBlock - 1) / kBlock;
-  std::string head, body, block;
-  add_bytes(head, blocks);
-  add_bytes(head, kBlock);
-  add_bytes(head, bytes.size() % kBlock);
-  for (std::size_t k = 0; k < blocks; ++k) {
-    const std::string_view part = bytes.substr(k * kBlock, kBlock);
-    uLongf size = compressBound(static_cast<uLong>(part.size()));
-    block.resize(size);
-    // The fastest level: numbers of a simulation hardly become shorter at the others.
-    compress2(reinterpret_cast<Bytef*>(block.data()), &size,
-              reinterpret_cast<const Bytef*>(part.data()), static_cast<uLong>(part.size()),
-              Z_BEST_SPEED);
-    add_bytes(head, size);
-    body.append(block, 0, size);
-  }
-  return head + body;
-}
-
-/// Points with numbers, and the cells between them.
-class PolyData {
- public:
-  PolyData(double time, std::size_t points) : time_(time), points_(points) {}
-
-  /// A number, or a vector, for each point or cell.
-  template <class Number>
-  static std::string numbers(std::string_view name, int components,
-                             const std::vector<Number>& values, std::string& data) {
-    constexpr const char* type = std::is_same_v<Number, double> ? "Float64"
-                                 : sizeof(Number) == 8          ? "Int64"
-                                                                : "Int32";
-    std::string text = "<DataArray type=\"" + std::string(type) + "\" Name=\"" + std::string(name) +
-                       "\" NumberOfComponents=\"" + std::to_string(components) +
-                       "\" format=\"appended\" offset=\"" + std::to_string(data.size()) + "\"/>\n";
-    data +=
-        compressed({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Number)});
-    return text;
-  }
-  template <class Number>
-  void at_points(std::string_view name, int components, const std::vector<Number>& values) {
-    at_points_ += numbers(name, components, values, data_);
-  }
-  template <class Number>
-  void at_cells(std::string_view name, int components, const std::vector<Number>& values) {
-    at_cells_ += numbers(name, components, values, data_);
-  }
-  /// @param places  three numbers for each point [m]
-  void places(const std::vector<double>& places) { places_ = numbers("Points", 3, places, data_); }
-  /// @param kind  "Verts", "Lines" or "Polys"
-  /// @param ends  for each cell, where its points end in the list
-  void cells(std::string_view kind, const std::vector<std::int64_t>& points,
-             const std::vector<std::int64_t>& ends) {
-    cell_kind_ = kind;
-    cell_count_ = ends.size();
-    cells_ = numbers("connectivity", 1, points, data_);
-    cells_ += numbers("offsets", 1, ends, data_);
-  }
-
-  std::string file() const {
-    const auto count_of = [&](std::string_view kind) {
-      return " NumberOf" + std::string(kind) + "=\"" +
-             std::to_string(kind == cell_kind_ ? cell_count_ : 0) + "\"";
-    };
-    std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" ";
-    text += std::endian::native == std::endian::little ? "byte_order=\"LittleEndian\""
-                                                       : "byte_order=\"BigEndian\"";
-    text += " header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<PolyData>\n";
-    text +=
-        "<FieldData><DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
-        "format=\"ascii\">" +
-        shortest(time_) + "</DataArray></FieldData>\n";
-    text += "<Piece NumberOfPoints=\"" + std::to_string(points_) + "\"" + count_of("Verts") +
-            count_of("Lines") + count_of("Strips") + count_of("Polys") + ">\n";
-    text += "<PointData>\n" + at_points_ + "</PointData>\n<CellData>\n" + at_cells_ +
-            "</CellData>\n<Points>\n" + places_ + "</Points>\n";
-    text += "<" + cell_kind_ + ">\n" + cells_ + "</" + cell_kind_ + ">\n";
-    return text + "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" + data_ +
-           "\n</AppendedData>\n</VTKFile>\n";
-  }
-
- private:
-  double time_;  // [s]
-  std::size_t points_;
-  std::string at_points_, at_cells_, places_;
-  std::string cell_kind_, cells_;
-  std::size_t cell_count_ = 0;
-  std::string data_;
-};
-
-/// Adds a vector of the plane or of space as three numbers.
-template <class V>
-void add_vector(std::vector<double>& to, const V& v) {
-  for (Eigen::Index d = 0; d < 3; ++d) to.push_back(d < v.size() ? v[d] : 0);
-}
-
-/// begin, begin + step, begin + 2 step, ...
-std::vector<std::int64_t> counted(std::size_t count, std::int64_t begin, std::int64_t step) {
-  std::vector<std::int64_t> list(count);
-  for (std::size_t k = 0; k < count; ++k) list[k] = begin + step * static_cast<std::int64_t>(k);
-  return list;
-}
 
 template <int Dim>
 std::string grains_file(const Run<Dim>& run, const Frame<Dim>& frame,
@@ -203,8 +87,9 @@ std::string contacts_file(const Run<Dim>& run, const Frame<Dim>& frame,
   return mesh.file();
 }
 
+/// Holds all grains, and what of the walls has an end.
 template <int Dim>
-std::string walls_file(const Run<Dim>& run, const Frame<Dim>& frame) {
+Eigen::AlignedBox<double, Dim> box_of(const Run<Dim>& run, const Frame<Dim>& frame) {
   Eigen::AlignedBox<double, Dim> box;
   for (Eigen::Index i = 0; i < frame.position.cols(); ++i) {
     const Vec<Dim> half = Vec<Dim>::Constant(frame.radius[i]);
@@ -214,6 +99,12 @@ std::string walls_file(const Run<Dim>& run, const Frame<Dim>& frame) {
     for (const Vec<Dim>& corner : wall.corners()) box.extend(corner);
     box.extend(wall.point);
   }
+  return box;
+}
+
+template <int Dim>
+std::string walls_file(const Run<Dim>& run, const Frame<Dim>& frame) {
+  const auto box = box_of(run, frame);
   std::vector<double> places;
   std::vector<std::int64_t> points, ends;
   std::vector<std::int32_t> walls;
@@ -241,60 +132,129 @@ bool walls_change(const Run<Dim>& run) {
   });
 }
 
+/// The edges of T as lines between centres.
+template <int Dim>
+std::string edges_file(const Frame<Dim>& frame, Triangulation<Dim>& t) {
+  std::vector<double> places, gaps;
+  std::vector<std::int64_t> points;
+  std::vector<std::int32_t> first, second;
+  for (Eigen::Index i = 0; i < frame.position.cols(); ++i)
+    add_vector(places, frame.position.col(i));
+  for (const auto& [i, j] : t.edges()) {
+    points.insert(points.end(), {i, j});
+    first.push_back(frame.id[static_cast<std::size_t>(i)]);
+    second.push_back(frame.id[static_cast<std::size_t>(j)]);
+    const double distance = (frame.position.col(i) - frame.position.col(j)).norm();
+    gaps.push_back(distance - frame.radius[i] - frame.radius[j]);
+  }
+  PolyData mesh(frame.time, frame.id.size());
+  mesh.at_cells("i", 1, first);
+  mesh.at_cells("j", 1, second);
+  mesh.at_cells("gap", 1, gaps);
+  mesh.places(places);
+  mesh.cells("Lines", points, counted(first.size(), 2, 2));
+  return mesh.file();
+}
+
+/// Laguerre cells: a polygon for each disc, or the faces of a polyhedron for each sphere.
+template <int Dim>
+std::string cells_file(const Frame<Dim>& frame, const Triangulation<Dim>& t,
+                       const Eigen::AlignedBox<double, Dim>& box) {
+  std::vector<double> places;
+  std::vector<std::int64_t> ends;
+  std::vector<std::int32_t> ids, beyond;
+  std::int64_t count = 0;
+  const auto add = [&](int i, const Columns<Dim>& corners) {
+    if (corners.cols() == 0) return;
+    for (Eigen::Index k = 0; k < corners.cols(); ++k) add_vector(places, corners.col(k));
+    count += corners.cols();
+    ends.push_back(count);
+    ids.push_back(frame.id[static_cast<std::size_t>(i)]);
+  };
+  for (int i = 0; i < t.size(); ++i) {
+    if constexpr (Dim == 2) {
+      add(i, laguerre_cell(t, i, box));
+    } else {
+      for (const LaguerreFace& face : laguerre_cell(t, i, box)) {
+        add(i, face.corners);
+        const auto other = static_cast<std::size_t>(std::max(face.beyond, 0));
+        beyond.push_back(face.beyond < 0 ? face.beyond : frame.id[other]);
+      }
+    }
+  }
+  PolyData mesh(frame.time, static_cast<std::size_t>(count));
+  mesh.at_cells("id", 1, ids);
+  if (Dim == 3) mesh.at_cells("beyond", 1, beyond);
+  mesh.places(places);
+  mesh.cells("Polys", counted(static_cast<std::size_t>(count), 0, 1), ends);
+  return mesh.file();
+}
+
 }  // namespace
 
 template <int Dim>
-void VtpFrames<Dim>::begin(const Run<Dim>&) {
+void VtkFrames<Dim>::begin(const Run<Dim>&) {
   make_folder(folder_);
   clear(0);
 }
 
 template <int Dim>
-void VtpFrames<Dim>::persist(const Run<Dim>&, StateVisitor visit, std::int64_t frames) {
-  visit("vtp_times", times_);
+void VtkFrames<Dim>::persist(const Run<Dim>&, StateVisitor visit, std::int64_t frames) {
+  visit(std::string(kinds_.front()) + "_times", times_);
   if (!visit.restores()) return;
   make_folder(folder_);
   clear(frames);
 }
 
 template <int Dim>
-void VtpFrames<Dim>::clear(std::int64_t first) const {
+void VtkFrames<Dim>::clear(std::int64_t first) const {
   std::error_code ignored;
-  for (const std::string_view kind : kKinds) {
+  for (const std::string_view kind : kinds_) {
     remove_numbered(folder_, std::string(kind) + "_", ".vtp", first);
     if (first == 0) fs::remove(folder_ / (std::string(kind) + ".pvd"), ignored);
   }
 }
 
 template <int Dim>
-void VtpFrames<Dim>::add_frame(const Run<Dim>& run, const Frame<Dim>& frame, std::int64_t number) {
-  const auto write = [&](std::string_view kind, const std::string& text) {
-    write_file(folder_ / numbered(std::string(kind) + "_", number, ".vtp"), text);
-  };
+void VtkFrames<Dim>::add_frame(const Run<Dim>& run, const Frame<Dim>& frame, std::int64_t number) {
   times_.push_back(frame.time);
-  const auto contacts = run.contacts();
-  write(kKinds[0], grains_file(run, frame, contacts));
-  list(kKinds[0], times_.size());
-  if (run.scene().output.contacts) {
-    write(kKinds[1], contacts_file(run, frame, contacts));
-    list(kKinds[1], times_.size());
-  }
-  if (run.walls().empty() || (number > 0 && !walls_change(run))) return;
-  write(kKinds[2], walls_file(run, frame));
-  list(kKinds[2], walls_change(run) ? times_.size() : 1);
+  add_files(run, frame, number);
 }
 
-/// Lists the files of the first frames.
 template <int Dim>
-void VtpFrames<Dim>::list(std::string_view kind, std::size_t count) const {
+void VtkFrames<Dim>::write(std::string_view kind, std::int64_t number,
+                           const std::string& bytes) const {
+  write_file(folder_ / numbered(std::string(kind) + "_", number, ".vtp"), bytes);
+}
+
+template <int Dim>
+void VtkFrames<Dim>::list(std::string_view kind, std::int64_t count) const {
   std::string text =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n"
       "<Collection>\n";
-  for (std::size_t k = 0; k < count; ++k) {
-    text += "<DataSet timestep=\"" + shortest(times_[k]) + "\" file=\"" +
-            numbered(std::string(kind) + "_", static_cast<std::int64_t>(k), ".vtp") + "\"/>\n";
+  for (std::int64_t k = 0; k < count; ++k) {
+    text += "<DataSet timestep=\"" + shortest(times_[static_cast<std::size_t>(k)]) + "\" file=\"" +
+            numbered(std::string(kind) + "_", k, ".vtp") + "\"/>\n";
   }
   write_file(folder_ / (std::string(kind) + ".pvd"), text + "</Collection>\n</VTKFile>\n");
+}
+
+template <int Dim>
+VtpFrames<Dim>::VtpFrames(const fs::path& folder)
+    : VtkFrames<Dim>(folder, {"grains", "contacts", "walls"}) {}
+
+template <int Dim>
+void VtpFrames<Dim>::add_files(const Run<Dim>& run, const Frame<Dim>& frame, std::int64_t number) {
+  const auto contacts = run.contacts();
+  this->write("grains", number, grains_file(run, frame, contacts));
+  this->list("grains", number + 1);
+  if (run.scene().output.contacts) {
+    this->write("contacts", number, contacts_file(run, frame, contacts));
+    this->list("contacts", number + 1);
+  }
+  if (run.walls().empty() || (number > 0 && !walls_change(run))) return;
+  this->write("walls", number, walls_file(run, frame));
+  this->list("walls", walls_change(run) ? number + 1 : 1);
 }
 
 template <int Dim>
@@ -307,7 +267,31 @@ double VtpFrames<Dim>::bytes_per_frame(const Run<Dim>& run, double contacts) con
   return bytes;
 }
 
+template <int Dim>
+CellFrames<Dim>::CellFrames(const fs::path& folder) : VtkFrames<Dim>(folder, {"edges", "cells"}) {}
+
+template <int Dim>
+void CellFrames<Dim>::add_files(const Run<Dim>& run, const Frame<Dim>& frame, std::int64_t number) {
+  // Not the run's: that one stands for where grains were a moment ago, and for wider ones.
+  Triangulation<Dim> t;
+  t.build(frame.position, frame.radius.array().square().matrix());
+  this->write("edges", number, edges_file(frame, t));
+  this->list("edges", number + 1);
+  this->write("cells", number, cells_file(frame, t, box_of(run, frame)));
+  this->list("cells", number + 1);
+}
+
+template <int Dim>
+double CellFrames<Dim>::bytes_per_frame(const Run<Dim>& run, double) const {
+  // Of a bed; each corner is written once for each face that has it.
+  constexpr double kEdges = Dim == 2 ? 3 : 7, kCorners = Dim == 2 ? 6 : 70;
+  constexpr double kEdge = 16, kCorner = 8 * Dim + 2;  // compressed
+  return run.count() * (Dim * sizeof(double) + kEdges * kEdge + kCorners * kCorner);
+}
+
 template class VtpFrames<2>;
 template class VtpFrames<3>;
+template class CellFrames<2>;
+template class CellFrames<3>;
 
 }  // namespace lagrain::detail

@@ -5,10 +5,12 @@ check_formats.py READER PROGRAM SCENES WORK, where READER is
   own  no library: the lists of files, the text of XYZ, and a run that is killed and resumed
   vtk  VTK's own reader of .vtp
   ase  ASE's reader of extended XYZ
+  h5py Python's reader of HDF5
 Exit code 77: the reader is not installed.
 """
 
 import csv
+import math
 import os
 import random
 import shutil
@@ -74,7 +76,7 @@ def materials(folder):
 
 
 def check_lists(folder):
-    for kind in ("grains", "contacts", "walls"):
+    for kind in ("grains", "contacts", "walls", "edges", "cells"):
         listed = xml.parse(os.path.join(folder, "vtp", kind + ".pvd")).getroot()
         found = [(entry.get("file"), float(entry.get("timestep")))
                  for entry in listed.iter("DataSet")]
@@ -189,6 +191,76 @@ def check_vtk(folder, dimension):
         if dimension == 3 and t >= 0.015:
             expected.remove(0)  # the paddle is gone
         expect(walls == expected, f"walls {walls} at {t}")
+        check_cells(read("edges", number), read("cells", number), grains, contacts, dimension)
+
+
+def check_cells(edges, cells, grains, contacts, dimension):
+    """Edges hold all contacts, cells fill their box, and the power of a cell's own grain is least
+    at its corners."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    def numbers(mesh, name):
+        return vtk_to_numpy(mesh.GetCellData().GetArray(name)).tolist()
+
+    centre = dict(zip(grains["id"], vectors(grains, "", dimension)))
+    radius = dict(zip(grains["id"], grains["radius"]))
+    pairs = list(zip(numbers(edges, "i"), numbers(edges, "j")))
+    expect(edges.GetNumberOfLines() == len(pairs) == len(set(pairs)), "edges")
+    touching = {(i, j) for i, j in zip(contacts["i"], contacts["j"]) if j >= 0}
+    expect(touching <= set(pairs), "contacts that are no edges")
+    for k, (i, j) in enumerate(pairs):
+        line = edges.GetCell(k)
+        expect([line.GetPoints().GetPoint(end) for end in (0, 1)] == [centre[i], centre[j]], "ends")
+        distance = math.dist(centre[i], centre[j])
+        expect(abs(numbers(edges, "gap")[k] - (distance - radius[i] - radius[j])) < 1e-12, "gap")
+
+    total = 0
+    expect(cells.GetNumberOfPolys() == cells.GetNumberOfCells(), "cells")
+    for k, i in enumerate(numbers(cells, "id")):
+        face = cells.GetCell(k).GetPoints()
+        corners = [face.GetPoint(c) for c in range(face.GetNumberOfPoints())]
+        for corner in corners:
+            powers = {j: math.dist(corner, centre[j]) ** 2 - radius[j] ** 2 for j in centre}
+            expect(powers[i] < min(powers.values()) + 1e-9, f"a corner of the cell of grain {i}")
+        for b, c in zip(corners[1:], corners[2:]):
+            a = corners[0]
+            if dimension == 2:
+                total += ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2
+            else:  # the tetrahedra from the origin
+                total += (a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
+                          + a[2] * (b[0] * c[1] - b[1] * c[0])) / 6
+    bounds = cells.GetBounds()
+    whole = math.prod(bounds[2 * d + 1] - bounds[2 * d] for d in range(dimension))
+    expect(abs(total / whole - 1) < 1e-9, f"cells fill {total} of {whole}")
+
+
+def check_h5py(folder, dimension):
+    import h5py
+    names = materials(folder)
+    for number, t in frames(folder):
+        grains = table(os.path.join(folder, "frames", number + ".csv"))
+        contacts = table(os.path.join(folder, "contacts", number + ".csv"))
+        with h5py.File(os.path.join(folder, "hdf5", number + ".h5")) as file:
+            def rows(name):
+                values = file[name][()].tolist()
+                return [tuple(v) + (0.0,) * (3 - len(v)) for v in values] \
+                    if values and isinstance(values[0], list) else values
+
+            expect(rows("time") == [t], "time")
+            expect(rows("position") == vectors(grains, "", dimension), "places")
+            expect(rows("velocity") == vectors(grains, "v", dimension), "velocities")
+            expect(rows("radius") == grains["radius"] and rows("id") == grains["id"], "radii, ids")
+            expect([names[k] for k in rows("material")] == grains["material"], "materials")
+            expect(len(rows("group")) == len(grains["id"]), "groups")
+            if spins(grains, dimension):
+                rates = [spin[-1] for spin in spins(grains, dimension)]
+                expect([spin[2 if dimension == 3 else 0] if isinstance(spin, tuple) else spin
+                        for spin in rows("spin")] == rates, "spins")
+            for name in ("i", "j", "wall", "overlap"):
+                expect(rows("contacts/" + name) == contacts[name], name)
+            if contacts["i"]:
+                expect(rows("contacts/normal") == vectors(contacts, "n", dimension), "normals")
+                expect(rows("contacts/force") == vectors(contacts, "f", dimension), "forces")
 
 
 def check_ase(folder, dimension):
@@ -219,6 +291,12 @@ if READER == "ase":
     except ImportError:
         print("SKIPPED: python3-ase is not installed")
         sys.exit(SKIPPED)
+if READER == "h5py":
+    try:
+        import h5py  # noqa: F401
+    except ImportError:
+        print("SKIPPED: python3-h5py is not installed")
+        sys.exit(SKIPPED)
 
 for scene, dimension in (("plane", 2), ("space", 3)):
     folder = os.path.join(WORK, scene)
@@ -229,6 +307,8 @@ for scene, dimension in (("plane", 2), ("space", 3)):
         check_resumed(scene, folder)
     elif READER == "vtk":
         check_vtk(folder, dimension)
+    elif READER == "h5py":
+        check_h5py(folder, dimension)
     else:
         check_ase(folder, dimension)
 print(f"{READER}: the same numbers")

@@ -275,10 +275,10 @@ TEST_SUITE("checkpoints") {
 
   TEST_CASE("the first line says what the file is, and a later version is refused by its number") {
     std::string bytes = encode_checkpoint(example());
-    CHECK(bytes.starts_with("lagrain checkpoint 1: HDF5 from byte 512 on, "));
-    bytes.replace(bytes.find('1'), 1, "2");
+    CHECK(bytes.starts_with("lagrain checkpoint 2: HDF5 from byte 512 on, "));
+    bytes.replace(bytes.find('2'), 1, "3");
     CHECK_THROWS_WITH_AS(decode_checkpoint(bytes),
-                         "it is of version 2, and this program reads version 1; resume it with the "
+                         "it is of version 3, and this program reads version 2; resume it with the "
                          "lagrain that wrote it",
                          SceneError);
     CHECK_THROWS_WITH_AS(decode_checkpoint("time[s],kinetic[J]"), "it is no checkpoint",

@@ -237,7 +237,7 @@ TEST_SUITE("run") {
         with(with(kHeap, "count = 12", "count = 600"), "high = [\"0.1 m\", \"0.2 m\"]",
              S::Dim == 2 ? "high = [0.4, 1]" : "high = [\"0.2 m\", \"0.4 m\"]");
     for (const char* const formats :
-         {"\"csv\"", "\"vtp\"", "\"xyz\"", "\"csv\", \"xyz\", \"vtp\""}) {
+         {"\"csv\"", "\"vtp\"", "\"cells\"", "\"xyz\"", "\"hdf5\"", "\"csv\", \"xyz\", \"vtp\""}) {
       CAPTURE(formats);
       const Folder folder;
       const auto run = make_run(scene_of<S::Dim>(
@@ -314,6 +314,43 @@ TEST_SUITE("run") {
     CHECK(content(folder.path / "last.csv").substr(0, 6) == "id[-],");
     CHECK(content(folder.path / "last.csv").find("nan") == std::string::npos);
     CHECK(content(folder.path / "summary.txt").find("broke off") != std::string::npos);
+
+    // The whole state is kept as well, and another run can start from it.
+    CHECK(message.find("whole in " + (folder.path / "checkpoint.h5").string()) !=
+          std::string::npos);
+    CHECK(run->steps() % 64 == 0);
+    CHECK(frame_csv(*run) == content(folder.path / "last.csv"));
+    const auto kept = resume_run<S::Dim>(read_checkpoint(folder.path), {}, 1);
+    CHECK(frame_csv(*kept) == frame_csv(*run));
+    const auto undisturbed = make_run(run->scene());
+    undisturbed->step(run->steps());
+    CHECK(frame_csv(*undisturbed) == frame_csv(*run));
+  }
+
+  TEST_CASE_TEMPLATE("what is kept of a run that breaks off remembers its contacts", S, Space<2>,
+                     Space<3>) {
+    // A bed has come to rest under friction when a stone hits it too hard.
+    const Folder folder;
+    const std::string text = with(kHeap, "duration = \"20 ms\"", "duration = \"200 ms\"") + R"(
+[[grain]]
+material = "rock"
+radius = "10 mm"
+position = [0.05, 20]
+velocity = [0, -120]
+)";
+    const auto run = make_run(scene_of<S::Dim>(text));
+    CHECK_THROWS_AS(record(*run, {folder.path, {}, {}}), SimulationError);
+    REQUIRE(run->steps() > 64);
+
+    const auto kept = resume_run<S::Dim>(read_checkpoint(folder.path), {}, 1);
+
+    const auto undisturbed = make_run(run->scene());
+    undisturbed->step(run->steps());
+    CHECK(contacts_csv(*undisturbed) == contacts_csv(*kept));
+    CHECK(undisturbed->ledger().kinetic == kept->ledger().kinetic);
+    undisturbed->step(10);
+    kept->step(10);
+    CHECK(frame_csv(*undisturbed) == frame_csv(*kept));
   }
 
   TEST_CASE_TEMPLATE("a folder that cannot be written is an error before the first step", S,

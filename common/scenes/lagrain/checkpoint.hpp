@@ -28,6 +28,9 @@ State decode_checkpoint(std::string_view bytes);
 /// @throws SceneError if it cannot be written; what was there before is still there then
 void write_checkpoint(const std::filesystem::path& folder, const State& state);
 
+/// Where the last checkpoint of a run lies.
+std::filesystem::path checkpoint_file(const std::filesystem::path& folder);
+
 /// Removes the checkpoints from the folder of a run.
 void remove_checkpoints(const std::filesystem::path& folder);
 

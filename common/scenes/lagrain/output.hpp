@@ -9,7 +9,8 @@
 ///     series.csv       energies, contacts, overlaps, who came and left, wall forces against time
 ///     frames.csv       number, step and time of each frame
 ///     frames/NNNN.csv  the grains; contacts/NNNN.csv beside it if the scene asks for contacts
-///     vtp/, frames.xyz the same for ParaView and OVITO, if the scene asks for these formats
+///     vtp/, frames.xyz, hdf5/
+///                      the same for ParaView, OVITO and Python, if the scene asks for it
 ///     summary.txt      what the run was and how far it can be trusted
 ///     checkpoint.h5    the state at the end, or as it was not long before a sudden one; and
 ///                      checkpoint_before.h5, the one before (checkpoint.hpp)
@@ -58,7 +59,8 @@ struct RecordOptions {
 /// it, nothing else.
 /// @return false if `stop` ended it; what was computed until then is written
 /// @throws SceneError if the folder cannot be written: before the first step if possible
-/// @throws SimulationError as Run::step, after writing what was computed and last.csv
+/// @throws SimulationError as Run::step, after writing what was computed, and the last good state
+/// as last.csv and as a checkpoint; the run has gone back to it
 template <int Dim>
 bool record(Run<Dim>& run, const RecordOptions& options);
 

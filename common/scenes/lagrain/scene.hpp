@@ -184,7 +184,7 @@ struct MeasuredPlane {
 };
 
 /// How frames are spelled in files.
-enum class OutputFormat { csv, vtp, xyz };
+enum class OutputFormat { csv, vtp, cells, xyz, hdf5 };
 
 /// What a run writes, and how often.
 struct OutputPlan {
