@@ -50,7 +50,7 @@ class TriangulationNeighbourhood {
   const T& triangulation() const { return sites_.t; }
   const TriangulationCost& cost() const { return sites_.cost; }  ///< since the start
   const Laziness& laziness() const { return laziness_; }         ///< what was chosen
-  /// Where T believes grain i to be [m], in the frame of the grains.
+  /// Where T believes grain i to be [m], in the frame of the grains at the last question.
   Vec<Dim> reference(int i) const { return sites_.reference.col(i) + sites_.drift; }
   /// How far grain i may be from there before T has to know [m].
   double skin(int i) const { return sites_.skin[i]; }

@@ -67,8 +67,8 @@ TEST_CASE_TEMPLATE("the plain loop and Simulation agree bit for bit", S, Space<2
 TEST_CASE_TEMPLATE("with many grains they agree to rounding", S, Space<2>, Space<3>) {
   constexpr int Dim = S::Dim;
   auto [plain, sim] = twins<Dim>(2500);
-  for (int step = 0; step < 100; ++step) plain.iterate();
-  sim.step(100);
+  for (int step = 0; step < 400; ++step) plain.iterate();
+  sim.step(400);
   const double radius = 0.9;  // of the smallest grain [m]
   const double apart = (plain.grains.position - sim.grains().position).cwiseAbs().maxCoeff();
   CHECK(plain.contacts.size() > 500);

@@ -335,8 +335,8 @@ TEST_SUITE("run") {
 [[grain]]
 material = "rock"
 radius = "10 mm"
-position = [0.05, 20]
-velocity = [0, -120]
+position = [0.05, 50]
+velocity = [0, -400]
 )";
     const auto run = make_run(scene_of<S::Dim>(text));
     CHECK_THROWS_AS(record(*run, {folder.path, {}, {}}), SimulationError);
