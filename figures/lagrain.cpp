@@ -8,6 +8,7 @@
 #include "picture_commands.hpp"
 #include "report.hpp"
 #include "sweep.hpp"
+#include "teach.hpp"
 #include "terminal.hpp"
 #include "watch_page.hpp"
 
@@ -275,13 +276,13 @@ void draw(const std::vector<int>& numbers, const FigureOptions& options, Progres
   });
 }
 
-/// A program run from where it was built finds the scenes of the sources, an installed one those
-/// that were installed with it, wherever that is.
-fs::path scenes_folder() {
-  if (fs::is_directory(LAGRAIN_SCENES)) return LAGRAIN_SCENES;
+/// What comes with the program: its scenes, its lessons. A program run from where it was built finds
+/// those of the sources, an installed one those that were installed with it, wherever that is.
+fs::path data_folder(const char* name) {
+  if (fs::is_directory(LAGRAIN_DATA)) return fs::path(LAGRAIN_DATA) / name;
   std::error_code unknown;
   const fs::path program = fs::read_symlink("/proc/self/exe", unknown);
-  return program.parent_path() / LAGRAIN_SCENES_FROM_PROGRAM;
+  return program.parent_path() / LAGRAIN_DATA_FROM_PROGRAM / name;
 }
 
 FigureOptions options_of(const FigureArguments& arguments) {
@@ -289,7 +290,7 @@ FigureOptions options_of(const FigureArguments& arguments) {
   options.out = arguments.out;
   options.quick = arguments.quick;
   options.stop = stopping;
-  options.scenes = scenes_folder();
+  options.scenes = data_folder("scenes");
   return options;
 }
 
@@ -317,6 +318,23 @@ int report_command(const FigureArguments& arguments) {
   std::cout << "report: " << (options.out / "report.html").string() << "\n";
   return 0;
 }
+
+#ifdef LAGRAIN_WITH_RENDER
+int teach_command(const fs::path& out) {
+  figures::TeachOptions options;
+  options.sources = data_folder("teach");
+  options.module =
+      fs::exists(LAGRAIN_MODULE) ? fs::path(LAGRAIN_MODULE) : options.sources / "lagrain.js";
+  options.out = out;
+  const figures::TeachReport report = figures::write_lessons(options);
+  std::cout << "wrote " << report.lessons << " lessons: " << (out / "index.html").string() << "\n";
+  if (!report.moves) {
+    std::cerr << "lagrain: " << options.module.string()
+              << " is not there, so pictures stand still; figures/run --teach builds it\n";
+  }
+  return 0;
+}
+#endif
 
 void add_checkpoint_option(CLI::App& app, RecordArguments& arguments) {
   app.add_option_function<std::string>(
@@ -433,6 +451,13 @@ int main(int argc, char** argv) {
   report_app->add_option("--out", report.out, "folder to write")->capture_default_str();
   report_app->add_flag("--quick", report.quick, "small scenes and few steps");
 
+#ifdef LAGRAIN_WITH_RENDER
+  std::string lessons = "lessons";
+  CLI::App* teach_app =
+      app.add_subcommand("teach", "Write lessons that run the library in a browser");
+  teach_app->add_option("--out", lessons, "folder to write")->capture_default_str();
+#endif
+
   const std::string unknown = unknown_word(app, {argv + 1, argv + argc});
   if (!unknown.empty()) return complain(unknown + " (see lagrain --help)", kBadInput);
   try {
@@ -447,6 +472,9 @@ int main(int argc, char** argv) {
   std::signal(SIGTERM, request_stop);
   try {
     if (report_app->parsed()) return report_command(report);
+#ifdef LAGRAIN_WITH_RENDER
+    if (teach_app->parsed()) return teach_command(lessons);
+#endif
     if (resume_app->parsed()) return resume_command(resume);
     if (sweep_app->parsed()) return sweep_command(sweep);
     if (pictures.parsed()) return pictures.run(stopping);
