@@ -99,6 +99,7 @@ class Formula {
         return "<mo stretchy=\"false\">|</mo>";
       case '(':
       case ')':
+        return "<mo stretchy=\"false\">" + std::string(1, c) + "</mo>";
       case ',':
       case '+':
       case '=':

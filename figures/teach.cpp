@@ -35,6 +35,7 @@ struct Source {
   std::string stem;  // "01_power"
   std::string text;
   std::string title, goal;
+  std::string cover = {};  // the address of its first picture
 };
 
 [[noreturn]] void fail(const Source& source, std::size_t at, const std::string& what) {
@@ -147,8 +148,8 @@ class Filler {
     const std::string name = words.substr(0, space);
     const std::string rest =
         space == std::string::npos ? std::string() : trimmed(words.substr(space));
-    if (name == "number") return in_text(lesson_number(rest));
-    if (name == "value") return shortest(lesson_number(rest));
+    if (name == "number") return in_text(number(rest));
+    if (name == "value") return shortest(number(rest));
     if (name == "lesson") return link(rest);
     if (name != "picture" && name != "discs" && name != "bench") {
       throw SceneError(
@@ -163,6 +164,15 @@ class Filler {
       return figure(picture_of_bench("discs", start), "discs", shows);
     }
     return bench(rest, shows);
+  }
+
+  /// A number of the last bench's start, or one of those that all lessons share.
+  double number(const std::string& name) const {
+    const std::string of_start = "start.";
+    if (!name.starts_with(of_start)) return lesson_number(name);
+    const auto value = start_[name.substr(of_start.size())].value<double>();
+    if (!value) throw SceneError("the bench above has no number " + shown(name));
+    return *value;
   }
 
   static std::string in_text(double value) {
@@ -201,13 +211,12 @@ class Filler {
   std::string bench(const std::string& rest, const std::string& shows) {
     const std::size_t space = rest.find_first_of(" \n");
     const std::string name = rest.substr(0, space);
-    toml::table start =
-        toml::parse(space == std::string::npos ? std::string() : rest.substr(space));
-    complete_start(name, start);
+    start_ = toml::parse(space == std::string::npos ? std::string() : rest.substr(space));
+    complete_start(name, start_);
     std::ostringstream json;
-    json << toml::json_formatter{start, toml::format_flags::none};
+    json << toml::json_formatter{start_, toml::format_flags::none};
     return "<div class=\"bench\" data-bench=\"" + name + "\" data-start=\"" + escaped(json.str()) +
-           "\">" + image(picture_of_bench(name, start), name, shows) + "</div>";
+           "\">" + image(picture_of_bench(name, start_), name, shows) + "</div>";
   }
 
   const Source& source_;
@@ -215,6 +224,7 @@ class Filler {
   fs::path out_;
   bool in_page_;
   int pictures_ = 0;
+  toml::table start_;  // of the last bench
 };
 
 /// What the pages run: the library if it was compiled for them, and the benches.
@@ -281,8 +291,8 @@ std::string index_of(const std::vector<Source>& lessons, bool moves) {
   }
   text += "<ol class=\"contents\">\n";
   for (const Source& lesson : lessons) {
-    text += "<li><a href=\"" + lesson.stem + ".html\">" + lesson.title + "</a><p>" + lesson.goal +
-            "</p></li>\n";
+    text += "<li><a href=\"" + lesson.stem + ".html\"><img src=\"" + lesson.cover + "\" alt=\"\">" +
+            lesson.title + "</a><p>" + lesson.goal + "</p></li>\n";
   }
   return text +
          "</ol>\n<p>The <a href=\"playground.html\">playground</a> has all benches with all "
@@ -313,6 +323,7 @@ TeachReport write_lessons(const TeachOptions& options) {
   };
   for (std::size_t k = 0; k < lessons.size(); ++k) {
     const std::string text = Filler(lessons[k], lessons, options.out, false).filled();
+    lessons[k].cover = between(text, "<img src=\"", "\"");
     write(lessons[k].stem + ".html",
           page(lessons[k].title, links_around(lessons, k), text, kLinkedStyle, linked(scripts)));
   }

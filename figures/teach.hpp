@@ -7,7 +7,8 @@
 ///
 ///     $x^2$, $$x^2$$              formulas (mathml.hpp)
 ///     {{number NAME}}             a number that the program computes (teach_numbers.hpp)
-///     {{value NAME}}              the same with all digits, for attributes
+///     {{value NAME}}              the same with all digits, for attributes; a NAME start.KEY is a
+///                                 number of the bench above
 ///     {{picture NAME | TEXT}}     a picture, and what it shows
 ///     {{discs START | TEXT}}      a picture of discs that are given
 ///     {{bench NAME START | TEXT}} what the reader moves, and what its still picture shows

@@ -16,19 +16,18 @@ double lesson_number(const std::string& name);
 /// The names of all of them.
 std::vector<std::string> lesson_numbers();
 
-/// A triangulation of discs of the plane as three corners each, counter-clockwise, and the heights
-/// of its sites. What the bench of flips starts from: the triangles follow the hull of the sites
-/// as a fan, whatever the weights.
+/// What the bench of flips starts from.
 struct FlipStart {
   std::vector<std::vector<double>> sites;   ///< x, y, r of each
-  std::vector<std::vector<int>> triangles;  ///< none of T's, as far as that is possible
+  std::vector<std::vector<int>> triangles;  ///< three corners each, counter-clockwise
 };
 
-/// Triangles that are all but regular: sites are put in one by one from left to right, and each is
-/// joined to what it sees of the hull.
-FlipStart sweep_triangulation(std::vector<std::vector<double>> sites);
+/// A triangulation as far from the regular one as flips lead: no edge that can be flipped is good.
+/// @pre the sites do not lie on a line
+FlipStart disordered_triangulation(std::vector<std::vector<double>> sites);
 
-/// The fewest flips that lead from a triangulation to the regular one.
+/// The fewest flips of bad edges that lead from a triangulation to the regular one. (A good edge
+/// that is flipped must be flipped back.)
 /// @pre no site is hidden in it
 int least_flips(const FlipStart& start);
 

@@ -304,14 +304,14 @@ DisplayList picture_of_work(const toml::table& start) {
   const double restitution = start["restitution"].value_or(0.5);
   Plot plot;
   plot.x = {.label = "evaluations of the force in one contact", .log = true};
-  plot.y = {.label = "relative error of the speed", .log = true};
+  plot.y = {.label = "relative error of the duration", .log = true};
   for (int integrator = 0; integrator < impact_integrators(); ++integrator) {
     Series series = series_style(integrator);
     series.name = impact_integrator_name(integrator);
     for (double steps = 10; steps < 1500; steps *= std::numbers::sqrt2) {
       if (impact(integrator, std::round(steps), restitution) == 0) break;
       series.x.push_back(lagrain_reals()[2]);
-      series.y.push_back(lagrain_reals()[0]);
+      series.y.push_back(lagrain_reals()[1]);
     }
     // Some integrators are for conservative scenes alone.
     if (!series.x.empty()) plot.series.push_back(std::move(series));
@@ -577,7 +577,7 @@ void complete_start(const std::string& bench, toml::table& start) {
     start.insert("box", toml::array{0.0, 0.0, 1.0, 0.7});
   }
   if (bench == "flips") {
-    const FlipStart flips = sweep_triangulation(rows_of(start, "sites"));
+    const FlipStart flips = disordered_triangulation(rows_of(start, "sites"));
     toml::array triangles;
     for (const auto& t : flips.triangles) triangles.push_back(toml::array{t[0], t[1], t[2]});
     start.insert("triangles", std::move(triangles));

@@ -27,7 +27,7 @@ class GrainsBench extends Bench {
     }).observe(this.canvas);
     document.addEventListener('visibilitychange', () => this.wake());
     this.restart();
-    if (start.running && !matchMedia('(prefers-reduced-motion: reduce)').matches) this.run(true);
+    if (!matchMedia('(prefers-reduced-motion: reduce)').matches) this.run(true);
   }
 
   /** The library holds the grains of one bench at a time. */

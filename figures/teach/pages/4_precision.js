@@ -17,7 +17,7 @@ class SignBench extends Bench {
   }
   addPoint(name) {
     const fields = this.points[name].map((value, axis) => make('input', {
-      type: 'text', inputmode: 'decimal', value: String(value), size: 8,
+      type: 'text', inputmode: 'decimal', value: String(value), size: 5,
       'aria-label': `${'xy'[axis]} of ${name}`,
       onchange: event => {
         this.points[name][axis] = Number(event.target.value.replace(',', '.'));
@@ -80,8 +80,8 @@ class WorkBench extends Bench {
     } catch {
       return null;
     }
-    const [speed, , evaluations] = this.library.reals();
-    return { error: speed, evaluations };
+    const [, duration, evaluations] = this.library.reals();
+    return { error: duration, evaluations };
   }
   draw() {
     if (!this.names) return;
@@ -113,7 +113,7 @@ class WorkBench extends Bench {
       stage.text(0.14, y, power(k), hue.ink, 'right');
     }
     stage.text(0.66, 0.035, 'evaluations of the force in one contact', hue.ink);
-    stage.text(0.02, 0.885, 'relative error of the speed', hue.ink, 'left');
+    stage.text(0.02, 0.885, 'relative error of the duration', hue.ink, 'left');
     const looks = [{ stroke: hue.gone, width: 2, dash: [6, 4] }, { stroke: hue.new, width: 2 },
                    { stroke: hue.contact, width: 2, dash: [2, 4] }, { stroke: hue.ink, width: 2 }];
     curves.forEach((curve, k) => {
