@@ -286,7 +286,7 @@ class DiscsBench extends Bench {
       });
     }
     if (switches.has('unit')) {
-      this.slider('unit of length', { least: -2, most: 1, step: 0.01, value: 0,
+      this.slider('unit of length', { least: -2, most: 2, step: 0.01, value: 0,
                                       show: power => shown(10 ** power) }, power => {
         this.unit = 1 / 10 ** power;
         this.build();
