@@ -34,8 +34,8 @@ struct TeachReport {
 };
 
 /// Writes the lessons, their index, and the playground, which is one file with everything in it.
-/// @throws SceneError: one sentence with file and line, if a lesson lacks something or asks for what
-/// there is not, or a file cannot be read or written
+/// @throws SceneError: one sentence with file and line, if a lesson lacks something or asks for
+/// what there is not, or a file cannot be read or written
 TeachReport write_lessons(const TeachOptions& options);
 
 }  // namespace lagrain::figures

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// The numbers that stand in the lessons: each is computed, by the library, whenever they are
-/// written.
+/// The numbers that stand in the lessons. Each is computed by the library when they are written.
 
 #include <string>
 #include <vector>

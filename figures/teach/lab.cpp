@@ -100,7 +100,9 @@ std::string in_words(double number) {
   if (text.back() == '.') text.pop_back();
   return text;
 }
-std::string in_words(int number) { return std::to_string(number); }
+std::string in_words(int number) {
+  return std::to_string(number);
+}
 
 void expect_count(int count, int most, const char* things) {
   expect(count >= 1 && count <= most,
@@ -128,7 +130,6 @@ void give_edges(std::span<const EdgeList::Edge> edges) {
   for (const auto& [i, j] : edges) give_ints(i, j);
 }
 void clear_answer() {
-  error.clear();
   reals.clear();
   ints.clear();
 }
@@ -136,7 +137,7 @@ void clear_answer() {
 // ---- Discs by hand -----------------------------------------------------------------------------
 
 /// The weight that a disc gets in T. Theorem 2.1 needs the first; the others show what it is for.
-enum class Rule { square, root, radius, zero };
+enum class Rule { square, root, twice, zero };
 
 /// A disc as a page gives it.
 struct Disc {
@@ -169,8 +170,8 @@ class Discs {
     switch (rule_) {
       case Rule::root:
         return std::sqrt(r);
-      case Rule::radius:
-        return r;
+      case Rule::twice:
+        return 2 * r;
       case Rule::zero:
         return 0;
       case Rule::square:
@@ -346,7 +347,9 @@ std::array<Site2, N> sites_of_input() {
   return sites;
 }
 
-int sign_of(double number) { return (number > 0) - (number < 0); }
+int sign_of(double number) {
+  return (number > 0) - (number < 0);
+}
 
 /// The sign of the orientation as one who does not know better computes it.
 int rounded_orientation(const Site2& a, const Site2& b, const Site2& c) {
@@ -649,11 +652,21 @@ ImpactErrors impact_errors(double steps_per_contact, double restitution, double 
 // ---- Memory ------------------------------------------------------------------------------------
 
 /// The sentence of what failed last; empty after a success.
-LAGRAIN_PAGE const char* lagrain_error() { return error.c_str(); }
-LAGRAIN_PAGE const double* lagrain_reals() { return reals.data(); }
-LAGRAIN_PAGE int lagrain_real_count() { return static_cast<int>(reals.size()); }
-LAGRAIN_PAGE const int* lagrain_ints() { return ints.data(); }
-LAGRAIN_PAGE int lagrain_int_count() { return static_cast<int>(ints.size()); }
+LAGRAIN_PAGE const char* lagrain_error() {
+  return error.c_str();
+}
+LAGRAIN_PAGE const double* lagrain_reals() {
+  return reals.data();
+}
+LAGRAIN_PAGE int lagrain_real_count() {
+  return static_cast<int>(reals.size());
+}
+LAGRAIN_PAGE const int* lagrain_ints() {
+  return ints.data();
+}
+LAGRAIN_PAGE int lagrain_int_count() {
+  return static_cast<int>(ints.size());
+}
 /// Room for n numbers from the page; null for less than 1 or too many.
 LAGRAIN_PAGE double* lagrain_input(int n) {
   return guarded(static_cast<double*>(nullptr), [&] {
@@ -668,7 +681,7 @@ LAGRAIN_PAGE double* lagrain_input(int n) {
 
 /// Forgets all discs and builds T for others.
 /// @param n     discs, at most 2,000; input: x, y, r of each
-/// @param rule  of the weights: 0 r^2, 1 sqrt r, 2 r, 3 zero
+/// @param rule  of the weights: 0 r^2, 1 sqrt r, 2 2 r, 3 zero
 LAGRAIN_PAGE int discs_build(int n, int rule) {
   return done([&] {
     expect(rule >= 0 && rule <= 3, "there is no rule " + in_words(rule) + " for weights");
@@ -697,7 +710,9 @@ LAGRAIN_PAGE int discs_events(int i, double x, double y, double r) {
     return count;
   });
 }
-LAGRAIN_PAGE int discs_count() { return discs.size(); }
+LAGRAIN_PAGE int discs_count() {
+  return discs.size();
+}
 /// Ints: i, j of each edge of T, sorted.
 LAGRAIN_PAGE int discs_edges() {
   clear_answer();
@@ -891,7 +906,9 @@ LAGRAIN_PAGE int grains_gravity(double x, double y) {
     running().set_gravity({x, y});
   });
 }
-LAGRAIN_PAGE int grains_count() { return run ? static_cast<int>(run->sim().radii().size()) : 0; }
+LAGRAIN_PAGE int grains_count() {
+  return run ? static_cast<int>(run->sim().radii().size()) : 0;
+}
 /// Reals: x, y, r [m], angle [rad] of each grain. @returns grains, or -1
 LAGRAIN_PAGE int grains_places() {
   return guarded(-1, [] {
@@ -1016,7 +1033,9 @@ LAGRAIN_PAGE int grains_hash() {
 
 // ---- Precision ---------------------------------------------------------------------------------
 
-LAGRAIN_PAGE int impact_integrators() { return static_cast<int>(kIntegratorNames.size()); }
+LAGRAIN_PAGE int impact_integrators() {
+  return static_cast<int>(kIntegratorNames.size());
+}
 /// The name of an integrator; empty if there is none.
 LAGRAIN_PAGE const char* impact_integrator_name(int integrator) {
   if (integrator < 0 || integrator >= impact_integrators()) return "";
