@@ -20,12 +20,14 @@
 #include <lagrain/law_table.hpp>
 #include <lagrain/observe.hpp>
 #include <lagrain/predicates2.hpp>
+#include <lagrain/predicates3.hpp>
 #include <lagrain/random.hpp>
 #include <lagrain/restitution.hpp>
 #include <lagrain/simulation.hpp>
 #include <lagrain/time_step.hpp>
 #include <lagrain/touch.hpp>
 #include <lagrain/triangulation2.hpp>
+#include <lagrain/triangulation3.hpp>
 #include <lagrain/triangulation_neighbourhood.hpp>
 
 #include <algorithm>
@@ -647,6 +649,21 @@ ImpactErrors impact_errors(double steps_per_contact, double restitution, double 
   return {apart / (2 * kSpeed * restitution) - 1, lasted / expected - 1};
 }
 
+// ---- Space -------------------------------------------------------------------------------------
+
+Triangulation<3> space;
+
+/// The sites of the input, each x, y, z, w.
+template <std::size_t N>
+std::array<Site3, N> sites_in_space() {
+  expect_input(4 * N);
+  std::array<Site3, N> sites;
+  for (std::size_t k = 0; k < N; ++k) {
+    sites[k] = {input[4 * k], input[4 * k + 1], input[4 * k + 2], input[4 * k + 3]};
+  }
+  return sites;
+}
+
 }  // namespace
 
 // ---- Memory ------------------------------------------------------------------------------------
@@ -1071,5 +1088,77 @@ LAGRAIN_PAGE int impact(int integrator, double steps_per_contact, double restitu
     if (integrator == 0) measure(SymplecticEuler{});
     if (integrator == 1) measure(VelocityVerlet{});
     if (integrator == 2) measure(ForestRuth{});
+  });
+}
+
+// ---- Space -------------------------------------------------------------------------------------
+
+/// Forgets all sites in space and builds T for others.
+/// @param n  sites, at most 2,000; input: x, y, z, weight of each
+LAGRAIN_PAGE int space_build(int n) {
+  return done([&] {
+    expect_count(n, kMostDiscs, "sites");
+    expect_input(4 * static_cast<std::size_t>(n));
+    Columns<3> places(3, n);
+    Eigen::VectorXd weights(n);
+    for (int i = 0; i < n; ++i) {
+      const double* site = &input[4 * static_cast<std::size_t>(i)];
+      for (int k = 0; k < 4; ++k) {
+        expect(std::abs(site[k]) <= kFarthest,
+               "site " + in_words(i) + " is further away than a thousand million metres");
+      }
+      places.col(i) << site[0], site[1], site[2];
+      weights[i] = site[3];
+    }
+    expect(n < 2 || !(places.colwise() - places.col(0)).isZero(0),
+           "all " + in_words(n) + " sites lie at one point, where there is nothing to triangulate");
+    space.build(places, weights);
+  });
+}
+LAGRAIN_PAGE int space_count() {
+  return space.size();
+}
+/// Ints: i, j of each edge of T, sorted.
+LAGRAIN_PAGE int space_edges() {
+  clear_answer();
+  give_edges(space.edges());
+  return static_cast<int>(ints.size() / 2);
+}
+/// Ints: four corners of each tetrahedron of T, positive; none if all sites lie in a plane.
+LAGRAIN_PAGE int space_tetrahedra() {
+  clear_answer();
+  space.for_each_tetrahedron([](int a, int b, int c, int d) { give_ints(a, b, c, d); });
+  return static_cast<int>(ints.size() / 4);
+}
+/// Ints: the sites whose cell is empty.
+LAGRAIN_PAGE int space_hidden() {
+  clear_answer();
+  ints.assign(space.hidden().begin(), space.hidden().end());
+  return static_cast<int>(ints.size());
+}
+/// @returns the number of defects that an exact check of T finds
+LAGRAIN_PAGE int space_audit() {
+  return guarded(-1, [] {
+    const auto defects = space.audit();
+    if (!defects.empty()) error = defects.front().sentence;
+    return static_cast<int>(defects.size());
+  });
+}
+/// Input: x, y, z, w of a, b, c, d. @returns 1 if b - a, c - a, d - a are right-handed, 0 if the four
+/// lie in a plane, else -1, exactly; -2: failed
+LAGRAIN_PAGE int sign_orientation3() {
+  return guarded(-2, [] {
+    const auto [a, b, c, d] = sites_in_space<4>();
+    return orientation(a, b, c, d);
+  });
+}
+/// Input: x, y, z, w of a, b, c, d, e. @returns 1 if e is in conflict with the tetrahedron a, b, c,
+/// d, whichever way that turns, 0 on a tie, else -1, exactly; -2: failed
+LAGRAIN_PAGE int sign_power3() {
+  return guarded(-2, [] {
+    const auto [a, b, c, d, e] = sites_in_space<5>();
+    const int turn = orientation(a, b, c, d);
+    expect(turn != 0, "the corners of the tetrahedron lie in a plane");
+    return turn * power_side(a, b, c, d, e);
   });
 }

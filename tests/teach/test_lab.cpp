@@ -291,6 +291,42 @@ TEST_SUITE("lab") {
     CHECK(ints[static_cast<std::size_t>(n * n)] == 1);
   }
 
+  TEST_CASE("five points in space have two or three tetrahedra") {
+    // Two apexes above and below a triangle: close together they see each other through it.
+    const auto tetrahedra = [](double apart) {
+      put({1, 0, 0, 0, -0.5, 0.8, 0, 0, -0.5, -0.8, 0, 0, 0, 0, apart, 0, 0, 0, -apart, 0});
+      REQUIRE(space_build(5) == 1);
+      CHECK(space_count() == 5);
+      CHECK(space_audit() == 0);
+      CHECK(space_edges() == (space_tetrahedra() == 3 ? 10 : 9));
+      return space_tetrahedra();
+    };
+    CHECK(tetrahedra(0.5) == 3);
+    CHECK(tetrahedra(2) == 2);
+    CHECK(space_hidden() == 0);
+
+    put({0, 0, 0, 0, std::nan(""), 0, 0, 0});
+    CHECK(space_build(2) == 0);
+    CHECK(says("number 4"));
+    put(std::vector<double>(40, 2));
+    CHECK(space_build(10) == 0);
+    CHECK(says("at one point"));
+    CHECK(space_build(40000) == 0);
+    CHECK(space_build(20) == 0);
+    CHECK(space_count() == 5);
+    CHECK(space_tetrahedra() == 2);
+
+    put({0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 1, 1, 0});
+    CHECK(sign_orientation3() == 1);
+    CHECK(sign_power3() == 0);  // the corner of a cube is on the sphere of four others
+    put({1, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0.5, 0.5, 0.5, 0});
+    CHECK(sign_orientation3() == -1);
+    CHECK(sign_power3() == 1);
+    put({1, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 1, 1, 0});
+    CHECK(sign_orientation3() == 0);
+    CHECK(sign_power3() == -2);
+  }
+
   TEST_CASE("grains of every kind move, no contact is missed, energy is accounted for") {
     for (const int kind : {0, 1, 2, 3}) {
       CAPTURE(kind);
