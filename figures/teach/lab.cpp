@@ -96,15 +96,14 @@ void expect(bool holds, const std::string& sentence) {
 }
 /// A number as a reader would write it.
 std::string in_words(double number) {
+  if (std::isnan(number)) return "not a number";
   std::string text = std::to_string(number);
   if (text.find('.') == std::string::npos) return text;
   text.erase(text.find_last_not_of('0') + 1);
   if (text.back() == '.') text.pop_back();
   return text;
 }
-std::string in_words(int number) {
-  return std::to_string(number);
-}
+std::string in_words(int number) { return std::to_string(number); }
 
 void expect_count(int count, int most, const char* things) {
   expect(count >= 1 && count <= most,
@@ -184,17 +183,24 @@ class Discs {
 
   UpdateReport move(int i, const Disc& to) {
     static_cast<void>(disc(i));
+    expect_sound(i, to);
     auto moved = discs_;
     moved[static_cast<std::size_t>(i)] = to;
-    return move_all(std::move(moved));
+    expect_apart(moved);
+    return place(std::move(moved));
+  }
+  /// The same for a place on the way to a sound one.
+  void pass(int i, const Disc& through) {
+    auto moved = discs_;
+    moved[static_cast<std::size_t>(i)] = through;
+    place(std::move(moved));
   }
   UpdateReport move_all(std::vector<Disc> to) {
     expect(to.size() == discs_.size(),
            in_words(static_cast<int>(to.size())) + " places for " + in_words(size()) + " discs");
     for (std::size_t i = 0; i < to.size(); ++i) expect_sound(static_cast<int>(i), to[i]);
     expect_apart(to);
-    discs_ = std::move(to);
-    return still_ ? UpdateReport{} : follow();
+    return place(std::move(to));
   }
   /// T stays as it is while discs move; or it is brought up to date and follows again.
   UpdateReport stand_still(bool on) {
@@ -204,12 +210,13 @@ class Discs {
 
  private:
   static void expect_sound(int i, const Disc& disc) {
+    const auto fits = [](double number) { return std::abs(number) <= kFarthest; };
+    if (fits(disc.x) && fits(disc.y) && fits(disc.r) && disc.r > 0) return;
     const std::string name = "disc " + in_words(i);
     expect(std::isfinite(disc.x) && std::isfinite(disc.y) && std::isfinite(disc.r),
            name + " has a place or radius that is not a number");
     expect(disc.r > 0, name + " has the radius " + in_words(disc.r) + ", which must be positive");
-    expect(std::max({std::abs(disc.x), std::abs(disc.y), disc.r}) <= kFarthest,
-           name + " is larger or further away than a thousand million metres");
+    expect(false, name + " is larger or further away than a thousand million metres");
   }
   static void expect_apart(const std::vector<Disc>& discs) {
     const auto at_first = [&](const Disc& d) {
@@ -233,6 +240,10 @@ class Discs {
     for (int i = 0; i < size(); ++i) w[i] = weight_of(discs_[static_cast<std::size_t>(i)].r);
     return w;
   }
+  UpdateReport place(std::vector<Disc> to) {
+    discs_ = std::move(to);
+    return still_ ? UpdateReport{} : follow();
+  }
   UpdateReport follow() {
     std::vector<int> moved;
     for (int i = 0; i < size(); ++i) {
@@ -255,8 +266,7 @@ Discs discs;
 std::vector<Disc> discs_of_input(int n) {
   expect_count(n, kMostDiscs, "discs");
   expect(input.size() >= 3 * static_cast<std::size_t>(n),
-         "the page gave fewer than three numbers "
-         "for each disc");
+         "the page gave fewer than three numbers for each disc");
   std::vector<Disc> list;
   for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
     list.push_back({input[3 * i], input[3 * i + 1], input[3 * i + 2]});
@@ -301,7 +311,7 @@ class EventSearch {
 
   Moment at(double t) {
     const auto between = [&](double a, double b) { return t == 1 ? b : a + t * (b - a); };
-    discs_.move(i_, {between(from_.x, to_.x), between(from_.y, to_.y), between(from_.r, to_.r)});
+    discs_.pass(i_, {between(from_.x, to_.x), between(from_.y, to_.y), between(from_.r, to_.r)});
     const auto edges = discs_.edges();
     const auto hidden = discs_.t().hidden();
     return {{edges.begin(), edges.end()}, {hidden.begin(), hidden.end()}};
@@ -349,9 +359,7 @@ std::array<Site2, N> sites_of_input() {
   return sites;
 }
 
-int sign_of(double number) {
-  return (number > 0) - (number < 0);
-}
+int sign_of(double number) { return (number > 0) - (number < 0); }
 
 /// The sign of the orientation as one who does not know better computes it.
 int rounded_orientation(const Site2& a, const Site2& b, const Site2& c) {
@@ -669,21 +677,11 @@ std::array<Site3, N> sites_in_space() {
 // ---- Memory ------------------------------------------------------------------------------------
 
 /// The sentence of what failed last; empty after a success.
-LAGRAIN_PAGE const char* lagrain_error() {
-  return error.c_str();
-}
-LAGRAIN_PAGE const double* lagrain_reals() {
-  return reals.data();
-}
-LAGRAIN_PAGE int lagrain_real_count() {
-  return static_cast<int>(reals.size());
-}
-LAGRAIN_PAGE const int* lagrain_ints() {
-  return ints.data();
-}
-LAGRAIN_PAGE int lagrain_int_count() {
-  return static_cast<int>(ints.size());
-}
+LAGRAIN_PAGE const char* lagrain_error() { return error.c_str(); }
+LAGRAIN_PAGE const double* lagrain_reals() { return reals.data(); }
+LAGRAIN_PAGE int lagrain_real_count() { return static_cast<int>(reals.size()); }
+LAGRAIN_PAGE const int* lagrain_ints() { return ints.data(); }
+LAGRAIN_PAGE int lagrain_int_count() { return static_cast<int>(ints.size()); }
 /// Room for n numbers from the page; null for less than 1 or too many.
 LAGRAIN_PAGE double* lagrain_input(int n) {
   return guarded(static_cast<double*>(nullptr), [&] {
@@ -696,7 +694,7 @@ LAGRAIN_PAGE double* lagrain_input(int n) {
 
 // ---- Discs by hand -----------------------------------------------------------------------------
 
-/// Forgets all discs and builds T for others.
+/// Forgets all discs and builds T for others, which it follows.
 /// @param n     discs, at most 2,000; input: x, y, r of each
 /// @param rule  of the weights: 0 r^2, 1 sqrt r, 2 2 r, 3 zero
 LAGRAIN_PAGE int discs_build(int n, int rule) {
@@ -727,9 +725,7 @@ LAGRAIN_PAGE int discs_events(int i, double x, double y, double r) {
     return count;
   });
 }
-LAGRAIN_PAGE int discs_count() {
-  return discs.size();
-}
+LAGRAIN_PAGE int discs_count() { return discs.size(); }
 /// Ints: i, j of each edge of T, sorted.
 LAGRAIN_PAGE int discs_edges() {
   clear_answer();
@@ -833,8 +829,8 @@ LAGRAIN_PAGE int sign_orientation(double ax, double ay, double bx, double by, do
     return orientation({ax, ay, 0}, {bx, by, 0}, {cx, cy, 0});
   });
 }
-/// Input: x, y, w of a, b, c, d. @returns 1 if d is in conflict with the triangle a, b, c, whichever
-/// way that turns, 0 on a tie, else -1, exactly; -2: failed
+/// Input: x, y, w of a, b, c, d. @returns 1 if d is in conflict with the triangle a, b, c, however
+/// that turns, 0 on a tie, else -1, exactly; -2: failed
 LAGRAIN_PAGE int sign_power() {
   return guarded(-2, [] {
     const auto [a, b, c, d] = sites_of_input<4>();
@@ -862,7 +858,7 @@ LAGRAIN_PAGE int sign_map(int n, double px, double py, double qx, double qy, dou
         });
   });
 }
-/// The same for the power test. Input: x, y, w of a, b, c, counter-clockwise, and of d, which moves.
+/// The same for the power test. Input: x, y, w of a, b, c, counter-clockwise, and of the moving d.
 LAGRAIN_PAGE int sign_map_power(int n) {
   return guarded(-1, [&] {
     const auto [a, b, c, d] = sites_of_input<4>();
@@ -923,9 +919,7 @@ LAGRAIN_PAGE int grains_gravity(double x, double y) {
     running().set_gravity({x, y});
   });
 }
-LAGRAIN_PAGE int grains_count() {
-  return run ? static_cast<int>(run->sim().radii().size()) : 0;
-}
+LAGRAIN_PAGE int grains_count() { return run ? static_cast<int>(run->sim().radii().size()) : 0; }
 /// Reals: x, y, r [m], angle [rad] of each grain. @returns grains, or -1
 LAGRAIN_PAGE int grains_places() {
   return guarded(-1, [] {
@@ -938,8 +932,8 @@ LAGRAIN_PAGE int grains_places() {
     return g.size();
   });
 }
-/// Ints: i, j of each contact, j = -1 for a wall. Reals: x, y of the one centre and of the other (at
-/// a wall, of the foot) [m], and the normal force, positive if it pushes [N]. @returns contacts or -1
+/// Ints: i, j of each contact, j = -1 for a wall. Reals: x, y of the one centre and of the other
+/// (at a wall, of the foot) [m], and the normal force [N]. @returns contacts, or -1
 LAGRAIN_PAGE int grains_contacts() {
   return guarded(-1, [] {
     const Sim& sim = running().sim();
@@ -968,8 +962,8 @@ LAGRAIN_PAGE int grains_walls() {
     return static_cast<int>(running().lines().size());
   });
 }
-/// The lazy T. Ints: i, j of each edge. Reals: where T believes each grain to be, its radius and its
-/// skin [m]. @returns edges, or -1
+/// The lazy T. Ints: i, j of each edge. Reals: x, y where T believes each grain to be, its radius
+/// and its skin [m]. @returns edges, or -1
 LAGRAIN_PAGE int grains_triangulation() {
   return guarded(-1, [] {
     const Sim& sim = running().sim();
@@ -1050,15 +1044,13 @@ LAGRAIN_PAGE int grains_hash() {
 
 // ---- Precision ---------------------------------------------------------------------------------
 
-LAGRAIN_PAGE int impact_integrators() {
-  return static_cast<int>(kIntegratorNames.size());
-}
+LAGRAIN_PAGE int impact_integrators() { return static_cast<int>(kIntegratorNames.size()); }
 /// The name of an integrator; empty if there is none.
 LAGRAIN_PAGE const char* impact_integrator_name(int integrator) {
   if (integrator < 0 || integrator >= impact_integrators()) return "";
   return kIntegratorNames[static_cast<std::size_t>(integrator)];
 }
-/// Two equal discs meet head-on, through a linear spring and dashpot whose answer has a closed form.
+/// Two equal discs meet head-on, through a linear spring and dashpot, which has a closed form.
 /// Reals: the error of the speed afterwards and of the duration, of what they should be, as root
 /// mean squares over places of the first touch within a step; and force evaluations to a contact.
 /// @param steps_per_contact  at least 3; a simulation refuses less than 10
@@ -1115,9 +1107,7 @@ LAGRAIN_PAGE int space_build(int n) {
     space.build(places, weights);
   });
 }
-LAGRAIN_PAGE int space_count() {
-  return space.size();
-}
+LAGRAIN_PAGE int space_count() { return space.size(); }
 /// Ints: i, j of each edge of T, sorted.
 LAGRAIN_PAGE int space_edges() {
   clear_answer();
@@ -1144,8 +1134,8 @@ LAGRAIN_PAGE int space_audit() {
     return static_cast<int>(defects.size());
   });
 }
-/// Input: x, y, z, w of a, b, c, d. @returns 1 if b - a, c - a, d - a are right-handed, 0 if the four
-/// lie in a plane, else -1, exactly; -2: failed
+/// Input: x, y, z, w of a, b, c, d. @returns 1 if b - a, c - a, d - a are right-handed, 0 if the
+/// four lie in a plane, else -1, exactly; -2: failed
 LAGRAIN_PAGE int sign_orientation3() {
   return guarded(-2, [] {
     const auto [a, b, c, d] = sites_in_space<4>();
@@ -1153,7 +1143,7 @@ LAGRAIN_PAGE int sign_orientation3() {
   });
 }
 /// Input: x, y, z, w of a, b, c, d, e. @returns 1 if e is in conflict with the tetrahedron a, b, c,
-/// d, whichever way that turns, 0 on a tie, else -1, exactly; -2: failed
+/// d, however that turns, 0 on a tie, else -1, exactly; -2: failed
 LAGRAIN_PAGE int sign_power3() {
   return guarded(-2, [] {
     const auto [a, b, c, d, e] = sites_in_space<5>();

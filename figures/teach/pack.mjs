@@ -10,7 +10,9 @@ const packed = gzipSync(readFileSync(wasm), { level: 9 }).toString('base64');
 
 writeFileSync(out, `${readFileSync(glue, 'utf8')}
 Lagrain = (make => async options => {
-  const packed = Uint8Array.from(atob('${packed}'), c => c.charCodeAt(0));
+  const text = atob('${packed}');
+  const packed = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; ++i) packed[i] = text.charCodeAt(i);
   const unpacked = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
   return make({ ...options, wasmBinary: await new Response(unpacked).arrayBuffer() });
 })(Lagrain);

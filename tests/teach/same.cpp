@@ -59,12 +59,8 @@ class Hash {
   std::uint64_t value_ = 14695981039346656037U;
 };
 
-auto simplices(const Triangulation<2>& t) {
-  return test::triangles(t);
-}
-auto simplices(const Triangulation<3>& t) {
-  return test::tetrahedra(t);
-}
+auto simplices(const Triangulation<2>& t) { return test::triangles(t); }
+auto simplices(const Triangulation<3>& t) { return test::tetrahedra(t); }
 
 template <int Dim>
 void add(Hash& hash, const Triangulation<Dim>& t) {
@@ -140,8 +136,8 @@ void try_set(test::SiteSet<Dim> s, Random& random, Totals& totals) {
   std::fflush(stdout);  // where signs are wrong this may not end
 }
 
-/// Sets in space in which compilers have no choice: powers differ in the last bit from one C library
-/// to another, and operands are random numbers in an order that is not fixed.
+/// Sets in space that are the same on every machine. Powers differ in the last bit from one C
+/// library to another, and random numbers that are operands are drawn in any order.
 std::vector<test3::Sites> sets_in_space(Random& random) {
   return {test3::jittered(random, 4), test3::overlapping(random, 60),
           test3::cubic_lattice(4, 1), test3::cubic_lattice(4, 0.1 * std::sqrt(2.0)),
@@ -180,8 +176,7 @@ void try_signs() {
   std::printf("map of signs %016" PRIx64 ", %d of doubles are wrong\n", map.value(), differ);
 }
 
-/// A scene is told its restitution, not its damping ratio: that has the same bits with every C
-/// library.
+/// Scenes are told a restitution. The damping ratio that follows is the same with every C library.
 void try_scenes() {
   Hash ratios;
   for (int k = 1; k < 2000; ++k) ratios.add(damping_ratio_for(k / 2000.0));

@@ -129,6 +129,15 @@ TEST_SUITE("lab") {
     refused(sign_power() == -2, "12 are needed");
     refused(lagrain_input(-1) == nullptr, "-1 numbers");
 
+    // One disc through the other: on the way both are at one point.
+    REQUIRE(build({0, 0, 0.5, -1, 0, 0.25}));
+    CHECK(discs_events(1, 1, 0, 0.25) > 0);
+    REQUIRE(build({0, 0, 1}));
+    CHECK(discs_edges() == 0);
+    REQUIRE(discs_cells(0, 0, 1, 1) == 1);
+    CHECK(ints[0] == 4);
+
+    REQUIRE(build(packed(random, 20)));
     CHECK(discs_move(3, 0.5, 0.5, 0.01) == 1);
     CHECK(std::string(lagrain_error()).empty());
     CHECK(discs_audit() == 0);
