@@ -276,8 +276,8 @@ void draw(const std::vector<int>& numbers, const FigureOptions& options, Progres
   });
 }
 
-/// What comes with the program: its scenes, its lessons. A program run from where it was built finds
-/// those of the sources, an installed one those that were installed with it, wherever that is.
+/// What comes with the program: its scenes, its lessons. A program run from where it was built
+/// finds those of the sources, an installed one those that were installed with it.
 fs::path data_folder(const char* name) {
   if (fs::is_directory(LAGRAIN_DATA)) return fs::path(LAGRAIN_DATA) / name;
   std::error_code unknown;

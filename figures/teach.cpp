@@ -285,9 +285,10 @@ std::vector<fs::path> files_of(const fs::path& folder, const std::string& ending
 
 std::string index_of(const std::vector<Source>& lessons, bool moves) {
   std::string text =
-      "<h1>Triangulations that move</h1>\n<p class=\"goal\">Twelve lessons on regular "
-      "triangulations and grains, each with something to move, two exercises that the page checks, "
-      "and a script for the teacher. 20 to 30 minutes each.</p>\n";
+      "<h1>Triangulations that move</h1>\n"
+      "<p class=\"goal\">Twelve lessons on regular triangulations and grains, each with something "
+      "to move, two exercises that the page checks, and a script for the teacher. 20 to 30 minutes "
+      "each.</p>\n";
   if (!moves) {
     text +=
         "<p class=\"trouble\">These pages were written without the compiled library: pictures "
@@ -300,8 +301,9 @@ std::string index_of(const std::vector<Source>& lessons, bool moves) {
             lesson.title + "</a><p>" + lesson.goal + "</p></li>\n";
   }
   return text +
-         "</ol>\n<p>The <a href=\"playground.html\">playground</a> has all benches with all "
-         "switches, in one file that can be mailed.</p>\n";
+         "</ol>\n"
+         "<p>The <a href=\"playground.html\">playground</a> has all benches with all switches, in "
+         "one file that can be mailed.</p>\n";
 }
 
 }  // namespace

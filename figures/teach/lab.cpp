@@ -131,6 +131,7 @@ void give_edges(std::span<const EdgeList::Edge> edges) {
   for (const auto& [i, j] : edges) give_ints(i, j);
 }
 void clear_answer() {
+  error.clear();
   reals.clear();
   ints.clear();
 }
@@ -138,7 +139,7 @@ void clear_answer() {
 // ---- Discs by hand -----------------------------------------------------------------------------
 
 /// The weight that a disc gets in T. Theorem 2.1 needs the first; the others show what it is for.
-enum class Rule { square, root, twice, zero };
+enum class Rule { square, root, radius, zero };
 
 /// A disc as a page gives it.
 struct Disc {
@@ -171,8 +172,8 @@ class Discs {
     switch (rule_) {
       case Rule::root:
         return std::sqrt(r);
-      case Rule::twice:
-        return 2 * r;
+      case Rule::radius:
+        return r;
       case Rule::zero:
         return 0;
       case Rule::square:
@@ -696,7 +697,7 @@ LAGRAIN_PAGE double* lagrain_input(int n) {
 
 /// Forgets all discs and builds T for others, which it follows.
 /// @param n     discs, at most 2,000; input: x, y, r of each
-/// @param rule  of the weights: 0 r^2, 1 sqrt r, 2 2 r, 3 zero
+/// @param rule  of the weights: 0 r^2, 1 sqrt r, 2 r, 3 zero
 LAGRAIN_PAGE int discs_build(int n, int rule) {
   return done([&] {
     expect(rule >= 0 && rule <= 3, "there is no rule " + in_words(rule) + " for weights");

@@ -46,7 +46,7 @@ template <class Number>
 void change(NumberTable<Number>& table, Input& input) {
   switch (input.take<std::uint8_t>() % 4) {
     case 0:
-      table.numbers.resize(input.take<std::uint8_t>());
+      table.numbers.resize(input.take<std::uint8_t>() * table.columns);
       return;
     case 1:
       table.columns = 1 + input.take<std::uint8_t>() % 8;
