@@ -10,8 +10,10 @@
 #include <lagrain/state.hpp>
 #include <lagrain/vec.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -253,6 +255,17 @@ class GrainStore {
       if (sound) slot_of[index(i)] = slot;
     }
     if (!sound) throw SceneError("its grains do not fit together");
+    const auto positive = [](const Eigen::VectorXd& list) {
+      return list.allFinite() && (list.array() > 0).all();
+    };
+    if (!positive(g.radius) || !positive(g.mass) || !g.inverse_mass.allFinite() ||
+        !g.position.allFinite() || !g.velocity.allFinite() ||
+        !std::all_of(g.material.begin(), g.material.end(), [](int m) {
+          return m >= 0 && m <= std::numeric_limits<std::uint8_t>::max();
+        })) {
+      throw SceneError(
+          "a grain of it has a size, mass, place, velocity or material that cannot be");
+    }
     by_number_ = joined(g, slot_of, make_grains<Dim, needs>({}));
     by_number_is_known_ = true;
     numbers_ = std::move(numbers);

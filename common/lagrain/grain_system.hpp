@@ -133,7 +133,9 @@ class GrainSystem {
     driven_load_.persist(visit.in("driven"));
     store_.persist(visit.in("grains"));
     near_.persist(visit.in("memory"), count(), block_size());
-    if (visit.restores()) go_on();
+    if (!visit.restores()) return;
+    expect_sound();
+    go_on();
   }
 
   /// Where the time went while it was measured.
@@ -422,6 +424,22 @@ class GrainSystem {
   }
 
   /// Everything is as a state says: what is kept besides to be fast follows.
+  /// What was restored may point to grains and laws that there are not.
+  void expect_sound() const {
+    const auto known = [&](int material) { return material >= 0 && material < laws_.materials(); };
+    const auto present = [&](int slot) { return slot >= 0 && slot < count(); };
+    for (const int material : store_.materials()) {
+      if (!known(material)) throw SceneError("a grain of it is of a material that there is not");
+    }
+    for (const Wall<Dim>& wall : walls_) {
+      for (const auto& encounter : wall.encounters) {
+        if (!present(encounter.grain))
+          throw SceneError("a wall of it has met a grain that is none");
+      }
+    }
+    if (steps_ < 0) throw SceneError("its number of steps is negative");
+  }
+
   void go_on() {
     forces_ = ContactForces<Dim, Law>(setting_.instructions, store_.materials().empty());
     forces_.measure_time(measuring_);

@@ -77,10 +77,16 @@ void Run<Dim>::persist(StateVisitor visit) {
   }
   start_.persist(visit.in("start"));
   audit_.persist(visit.in("audit"));
-  if (traffic_) traffic_->persist(visit.in("traffic"));
+  if (traffic_) traffic_->persist(visit.in("traffic"), count());
   if (!visit.restores()) return;
   const auto n = static_cast<std::size_t>(count());
-  if (materials_.size() != n || groups_.size() != n || held.size() != n) {
+  const auto within = [](const std::vector<int>& list, int least, std::size_t end) {
+    return std::all_of(list.begin(), list.end(),
+                       [&](int k) { return k >= least && k < static_cast<int>(end); });
+  };
+  if (materials_.size() != n || groups_.size() != n || held.size() != n ||
+      !within(materials_, 0, scene_.materials.size()) ||
+      !within(groups_, -1, scene_.fills.size() + scene_.inlets.size())) {
     throw SceneError("its grains do not fit together");
   }
   set_rules(held);

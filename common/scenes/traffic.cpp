@@ -67,7 +67,7 @@ typename Traffic<Dim>::Change Traffic<Dim>::look(const Run<Dim>& run) {
 }
 
 template <int Dim>
-void Traffic<Dim>::persist(StateVisitor visit) {
+void Traffic<Dim>::persist(StateVisitor visit, int grains) {
   for (std::size_t k = 0; k < sources_.size(); ++k) {
     StateVisitor inlet = visit.in("inlets").in(std::to_string(k));
     Source& source = sources_[k];
@@ -97,6 +97,8 @@ void Traffic<Dim>::persist(StateVisitor visit) {
   counts_.first_lost.clear();
   for (std::size_t k = 0; k < ids.size(); ++k) counts_.first_lost.push_back({ids[k], times[k]});
   visit("before", before_);
+  if (visit.restores() && before_.cols() != grains)
+    throw SceneError("what it knows of its grains does not fit them");
 }
 
 template <int Dim>

@@ -50,7 +50,8 @@ class Traffic {
   const TrafficCounts& counts() const { return counts_; }  ///< so far
 
   /// Keeps or restores who has come and left, and the random numbers of those who will come.
-  void persist(StateVisitor visit);
+  /// @param grains  that are there
+  void persist(StateVisitor visit, int grains);
 
  private:
   struct Source {

@@ -75,7 +75,7 @@ template <int Dim>
 const State& example() {
   static const State state = [] {
     const auto run = heap<Dim>();
-    run->step(run->steps_planned() / 2);
+    run->step(run->steps_planned() / 10);
     State kept;
     run->persist(StateVisitor::keeping(kept).in("run"));
     return kept;

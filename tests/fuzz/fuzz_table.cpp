@@ -22,8 +22,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   write_file(file, std::string(reinterpret_cast<const char*>(bytes), size));
 
   static const std::string head =
-      "dimension = 3\nduration = 1\ngravity = [0, 0, -1]\nnormal = \"linear\"\nfriction = \"none\"\n[law]\n"
-      "stiffness = 1e6\nrestitution = 1\n[materials.rock]\ndensity = 1000\n";
+      "dimension = 3\nduration = 1\ngravity = [0, 0, -1]\nnormal = \"linear\"\n"
+      "friction = \"none\"\n[law]\nstiffness = 1e6\nrestitution = 1\n[materials.rock]\n"
+      "density = 1000\n";
   test::refuses_in_one_line([&] {
     Scene<3> scene =
         parse_scene<3>(head + "[[grains]]\nfile = \"" + file.string() + "\"\n", "s.toml");

@@ -327,6 +327,41 @@ TEST_SUITE("checkpoints") {
     CHECK_THROWS_WITH_AS(visit("point", whole), "its wall/point is of another kind", SceneError);
   }
 
+  // These were found by fuzzing: such a state would have led out of a list, or for ever on.
+  TEST_CASE("a state that points to what there is not is refused") {
+    const std::string text = with(kPlane, "elastic", "triangulation");
+    const auto run = run_of<2>(text);
+    run->step(20);
+    State whole;
+    run->persist(StateVisitor::keeping(whole).in("run"));
+    const auto refused = [&](const std::string& name, auto number) {
+      State state = whole;
+      auto table = state.get<NumberTable<decltype(number)>>(name);
+      table.numbers.at(3 % table.numbers.size()) = number;
+      state.set(name, table);
+      const auto other = run_of<2>(text);
+      std::string message;
+      try {
+        other->persist(StateVisitor::restoring(state).in("run"));
+      } catch (const SceneError& error) {
+        message = error.what();
+      }
+      return message;
+    };
+    using Whole = std::int64_t;
+    const std::string cannot_be =
+        "a grain of it has a size, mass, place, velocity or material that cannot be";
+    CHECK(refused("run/grains/radius", -0.01) == cannot_be);
+    CHECK(refused("run/grains/radius", std::nan("")) == cannot_be);
+    CHECK(refused("run/grains/mass", 0.0) == cannot_be);
+    CHECK(refused("run/grains/position", HUGE_VAL) == cannot_be);
+    CHECK(refused("run/grains/number", Whole{1 << 20}) == "its grains do not fit together");
+    CHECK(refused("run/materials", Whole{9}) == "its grains do not fit together");
+    CHECK(refused("run/groups", Whole{7}) == "its grains do not fit together");
+    CHECK(refused("run/groups", Whole{-2}) == "its grains do not fit together");
+    CHECK(refused("run/step", Whole{-1}) == "its number of steps is negative");
+  }
+
   TEST_CASE("a run that was stopped goes on to the same bits: discs") {
     for (const std::string friction : {"none", "viscous", "elastic", "rolling"}) {
       for (const std::string neighbourhood : {"triangulation", "linked cells"}) {
