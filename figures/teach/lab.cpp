@@ -162,6 +162,7 @@ class Discs {
     expect(i >= 0 && i < size(), "there is no disc " + in_words(i) + " among " + in_words(size()));
     return discs_[static_cast<std::size_t>(i)];
   }
+  const std::vector<Disc>& all() const { return discs_; }
   /// As T believes them: the same unless it stands still.
   const std::vector<Disc>& believed() const { return believed_; }
   const Triangulation<2>& t() const { return t_; }
@@ -749,13 +750,13 @@ LAGRAIN_PAGE int discs_hidden() {
 LAGRAIN_PAGE int discs_contacts() {
   clear_answer();
   const auto edges = discs.edges();
-  for (int i = 0; i < discs.size(); ++i) {
-    const Disc a = discs.disc(i);
-    for (int j = i + 1; j < discs.size(); ++j) {
-      const Disc b = discs.disc(j);
-      const double dx = a.x - b.x, dy = a.y - b.y, reach = a.r + b.r;
+  const std::vector<Disc>& all = discs.all();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t j = i + 1; j < all.size(); ++j) {
+      const double dx = all[i].x - all[j].x, dy = all[i].y - all[j].y, reach = all[i].r + all[j].r;
       if (dx * dx + dy * dy > reach * reach) continue;
-      give_ints(i, j, std::binary_search(edges.begin(), edges.end(), EdgeList::Edge{i, j}));
+      const EdgeList::Edge pair{static_cast<int>(i), static_cast<int>(j)};
+      give_ints(i, j, std::binary_search(edges.begin(), edges.end(), pair));
     }
   }
   return static_cast<int>(ints.size() / 3);
