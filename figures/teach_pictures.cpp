@@ -576,7 +576,7 @@ void complete_start(const std::string& bench, toml::table& start) {
     start.erase("seed");
     start.insert("box", toml::array{0.0, 0.0, 1.0, 0.7});
   }
-  if (bench == "flips") {
+  if (bench == "flips" && !start.contains("triangles")) {
     const FlipStart flips = disordered_triangulation(rows_of(start, "sites"));
     toml::array triangles;
     for (const auto& t : flips.triangles) triangles.push_back(toml::array{t[0], t[1], t[2]});

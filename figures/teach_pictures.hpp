@@ -26,7 +26,7 @@ std::vector<std::string> lesson_pictures();
 DisplayList picture_of_bench(const std::string& bench, const toml::table& start);
 
 /// Puts into a start what its bench is not to choose by itself: discs at random places, the
-/// triangles that flips begin with, the names of integrators.
+/// triangles that flips begin with if the lesson gives none, the names of integrators.
 void complete_start(const std::string& bench, toml::table& start);
 
 }  // namespace lagrain::figures

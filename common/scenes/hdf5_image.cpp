@@ -65,12 +65,20 @@ Handle memory_file_access() {
   return {access, H5Pclose};
 }
 
+/// How an object is made: without the time of day, so that the same numbers are the same bytes.
+Handle timeless(hid_t kind) {
+  const hid_t properties = H5Pcreate(kind);
+  H5Pset_obj_track_times(properties, false);
+  return {properties, H5Pclose};
+}
+
 template <class Number>
 void put(hid_t file, const std::string& name, const NumberTable<Number>& table) {
   const std::array<hsize_t, 2> size{table.rows(), table.columns};
   const Handle space(H5Screate_simple(table.columns == 1 ? 1 : 2, size.data(), nullptr), H5Sclose);
+  const Handle properties = timeless(H5P_DATASET_CREATE);
   const Handle set(H5Dcreate2(file, name.c_str(), file_type<Number>(), space, H5P_DEFAULT,
-                              H5P_DEFAULT, H5P_DEFAULT),
+                              properties, H5P_DEFAULT),
                    H5Dclose);
   if (table.numbers.empty()) return;
   expect(H5Dwrite(set, memory_type<Number>(), H5S_ALL, H5S_ALL, H5P_DEFAULT,
@@ -81,8 +89,9 @@ void put(hid_t file, const std::string& name, const std::string& text) {
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   expect(H5Tset_size(type, text.size() + 1) >= 0);
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle properties = timeless(H5P_DATASET_CREATE);
   const Handle set(
-      H5Dcreate2(file, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+      H5Dcreate2(file, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose);
   expect(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()) >= 0);
 }
 
@@ -147,7 +156,8 @@ std::string to_hdf5(const State& state, std::size_t room) {
          slash = name.find('/', slash + 1)) {
       const std::string group = name.substr(0, slash);
       if (H5Lexists(file, group.c_str(), H5P_DEFAULT) > 0) continue;
-      const Handle made(H5Gcreate2(file, group.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+      const Handle properties = timeless(H5P_GROUP_CREATE);
+      const Handle made(H5Gcreate2(file, group.c_str(), H5P_DEFAULT, properties, H5P_DEFAULT),
                         H5Gclose);
     }
     std::visit([&, &key = name](const auto& v) { put(file, key, v); }, value);

@@ -13,6 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdint>
@@ -24,6 +25,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 using namespace lagrain;
@@ -251,6 +253,12 @@ State example() {
 }  // namespace
 
 TEST_SUITE("checkpoints") {
+  TEST_CASE("the same state is the same bytes, whenever it is written") {
+    const std::string bytes = encode_checkpoint(example());
+    std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5 counts seconds
+    CHECK(encode_checkpoint(example()) == bytes);
+  }
+
   TEST_CASE("a state comes back as it was") {
     const State state = example();
     CHECK(decode_checkpoint(encode_checkpoint(state)).values() == state.values());

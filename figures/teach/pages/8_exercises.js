@@ -69,7 +69,9 @@ function addBuildExercise(place) {
   place.append(verdict);
   document.addEventListener('bench', event => {
     if (place.classList.contains('done') || !event.detail.ready) return;
-    if (place.dataset.of && event.detail.place.dataset.bench !== place.dataset.of) return;
+    // Of several benches of a kind all but the first have names of their own.
+    const bench = event.detail.start.name ?? event.detail.place.dataset.bench;
+    if (place.dataset.of && bench !== place.dataset.of) return;
     if (!holds(place.dataset.build, event.detail)) return;
     place.classList.add('done');
     verdict.textContent = '✓ Done.';
