@@ -15,7 +15,8 @@ foreach(module common scenes dim2 dim3 render)
   endif()
 endforeach()
 set(pages README.md common/README.md common/scenes/README.md dim2/README.md dim3/README.md
-  render/README.md figures/README.md tests/README.md .github/CONTRIBUTING.md CHANGELOG.md)
+  render/README.md figures/README.md figures/python/README.md tests/README.md
+  .github/CONTRIBUTING.md CHANGELOG.md)
 
 set(DOXYGEN_OUTPUT_DIRECTORY docs)
 set(DOXYGEN_USE_MDFILE_AS_MAINPAGE ${PROJECT_SOURCE_DIR}/README.md)

@@ -168,16 +168,17 @@ void add_triangulation(py::module_& module, const char* name) {
       .def("move", &T::move, py::arg("centres"), py::arg("radii"),
            "All sites move or change their radii; returns the number of flips.")
       .def("cell", &T::cell, py::arg("site"), py::arg("low"), py::arg("high"),
-           Dim == 2 ? "The Laguerre cell cut to a box, as corners of shape (K, 2), counter-clockwise "
-                      "[m]; K = 0 if the site is hidden."
-                    : "The Laguerre cell cut to a box, as a list of faces: the site beyond (negative: "
-                      "a side of the box), and corners of shape (K, 3), counter-clockwise seen from "
-                      "outside [m]. Empty if the site is hidden.")
+           Dim == 2
+               ? "The Laguerre cell cut to a box, as corners of shape (K, 2), counter-clockwise "
+                 "[m]; K = 0 if the site is hidden."
+               : "The Laguerre cell cut to a box, as a list of faces: the site beyond (negative: "
+                 "a side of the box), and corners of shape (K, 3), counter-clockwise seen from "
+                 "outside [m]. Empty if the site is hidden.")
       .def("audit", &T::audit, "What an exact check finds wrong, in sentences: nothing.")
       .def_property_readonly("edges", &T::edges, "Shape (M, 2): sites, the smaller number first.")
-      .def_property_readonly(Dim == 2 ? "triangles" : "tetrahedra", &T::simplices,
-                             ("Shape (K, " + std::to_string(Dim + 1) + "): positively oriented.")
-                                 .c_str())
+      .def_property_readonly(
+          Dim == 2 ? "triangles" : "tetrahedra", &T::simplices,
+          ("Shape (K, " + std::to_string(Dim + 1) + "): positively oriented.").c_str())
       .def_property_readonly("hidden", &T::hidden, "Sites whose cell is empty.")
       .def("__len__", &T::size);
 }
@@ -273,16 +274,20 @@ void add_simulation(py::module_& module, const char* name) {
            "\"law.friction=0.3\"; threads: at most so many share a step.")
       .def("step", &S::step, py::arg("count") = 1,
            "Makes time steps. Other threads of Python run meanwhile, and Ctrl-C ends it.")
-      .def("explain", [](const S& s) { return explain(s.run()); },
-           "What the scene is made of, in words.")
-      .def_property_readonly("time", [](const S& s) { return s.run().time(); }, "[s]")
-      .def_property_readonly("time_step", [](const S& s) { return s.run().time_step(); }, "[s]")
-      .def_property_readonly("steps", [](const S& s) { return s.run().steps(); }, "made so far")
-      .def_property_readonly("duration", [](const S& s) { return s.run().scene().duration; },
-                             "of the scene [s]")
+      .def(
+          "explain", [](const S& s) { return explain(s.run()); },
+          "What the scene is made of, in words.")
       .def_property_readonly(
-          "positions", matrix([](const auto& run) -> const auto& { return run.positions(); }),
-          ("Centres [m]." + shape + view).c_str())
+          "time", [](const S& s) { return s.run().time(); }, "[s]")
+      .def_property_readonly(
+          "time_step", [](const S& s) { return s.run().time_step(); }, "[s]")
+      .def_property_readonly(
+          "steps", [](const S& s) { return s.run().steps(); }, "made so far")
+      .def_property_readonly(
+          "duration", [](const S& s) { return s.run().scene().duration; }, "of the scene [s]")
+      .def_property_readonly("positions",
+                             matrix([](const auto& run) -> const auto& { return run.positions(); }),
+                             ("Centres [m]." + shape + view).c_str())
       .def_property_readonly(
           "velocities", matrix([](const auto& run) -> const auto& { return run.velocities(); }),
           ("[m/s]." + shape + view).c_str())
@@ -300,9 +305,10 @@ void add_simulation(py::module_& module, const char* name) {
             return ids;
           },
           "What each grain is called as long as it is there.")
-      .def_property_readonly("contacts", &S::contacts,
-                             "Now: i and its partner, which is grain j (wall is -1) or a wall (j is "
-                             "-1); overlap [m], normal [-], force on i [N].")
+      .def_property_readonly(
+          "contacts", &S::contacts,
+          "Now: i and its partner, which is grain j (wall is -1) or a wall (j is "
+          "-1); overlap [m], normal [-], force on i [N].")
       .def_property_readonly("ledger", &S::ledger,
                              "Where the energy is, and what no entry accounts for (residual) [J].")
       .def("__len__", [](const S& s) { return s.run().count(); });

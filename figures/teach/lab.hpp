@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// @file
-/// Those functions of lab.cpp that the lessons are written with: what stands in a text or a picture
-/// comes from the same code as what moves in the page.
+/// Those functions of lab.cpp that C++ calls as well. What stands in a text or a picture comes from
+/// the same code as what moves in the page. (JavaScript needs no header; lab.cpp explains them.)
 
 extern "C" {
 const char* lagrain_error();
@@ -19,6 +19,8 @@ int grains_places();
 int grains_contacts();
 int grains_walls();
 int grains_triangulation();
+int grains_report();
+int grains_hash();
 int impact(int integrator, double steps_per_contact, double restitution);
 int impact_integrators();
 const char* impact_integrator_name(int integrator);

@@ -13,6 +13,7 @@
 
 #include "dim2/sets2.hpp"
 #include "dim3/sets3.hpp"
+#include "teach/lab.hpp"
 
 #include <chrono>
 #include <cinttypes>
@@ -21,19 +22,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-
-// Of lab.cpp, which pages call.
-extern "C" {
-const char* lagrain_error();
-const int* lagrain_ints();
-int lagrain_int_count();
-int sign_map(int n, double px, double py, double qx, double qy, double rx, double ry);
-int grains_start(int kind, int n, int seed, double friction, double restitution);
-int grains_step(int count);
-int grains_hash();
-int grains_report();
-const double* lagrain_reals();
-}
 
 namespace lagrain {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What teaching pages call, compiled for this machine. The functions have no header: JavaScript
-// needs none, and one file says what they do.
+// What teaching pages call, compiled for this machine. The functions have no header that lists all:
+// JavaScript needs none, and one file says what they do.
 #include "../../figures/teach/lab.cpp"
 
 #include <lagrain/all_pairs.hpp>
