@@ -20,6 +20,11 @@ class SpaceBench extends Bench {
     this.button('flip', () => this.flip());
     this.tick('drawn apart', true, on => { this.apart = on; this.draw(); });
     this.apart = true;
+    this.radius = 0;
+    this.slider('radius of the last site', { least: 0, most: 1.5, step: 0.01, value: 0 }, value => {
+      this.radius = value;
+      this.draw();
+    });
     let held = null;
     this.canvas.addEventListener('pointerdown', event => {
       held = [event.clientX, event.clientY];
@@ -56,6 +61,13 @@ class SpaceBench extends Bench {
     this.say(`${before} tetrahedra became ${now}.`);
     this.draw();
   }
+  /** How many tetrahedra the regular triangulation of the points has, by the library. */
+  regular(points) {
+    const last = points.length - 1, weight = this.radius ** 2;
+    const sites = points.flatMap((point, i) => [...point, i === last ? weight : 0]);
+    const good = this.attempt(() => this.library.callWith(sites, 'space_build', points.length));
+    return good ? this.library.call('space_tetrahedra') : '–';
+  }
   /** Where a point is on the page, and how near it is. */
   seen([x, y, z]) {
     const [a, b] = this.turned;
@@ -89,7 +101,8 @@ class SpaceBench extends Bench {
       if (!this.apart) stage.disc(x, y, 0.035, { fill: hue.ink });
       stage.text(x * 1.28, y * 1.28, String(i), hue.ink);
     });
-    this.table([['tetrahedra', tetrahedra.length], ['flip', flip.name]]);
+    this.table([['flip', flip.name], ['tetrahedra drawn', tetrahedra.length],
+                ['tetrahedra of T', this.regular(points)]]);
     this.changed();
   }
 }
