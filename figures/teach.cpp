@@ -16,7 +16,6 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <sstream>
 #include <string>
 #include <system_error>

@@ -211,6 +211,7 @@ DisplayList picture_of_grains(const toml::table& start) {
   const std::string kind = start["kind"].value_or(std::string("pour"));
   const auto known = kinds.find(kind);
   if (known == kinds.end()) throw SceneError("there is no kind of grains " + shown(kind));
+  grains_leap(start["leap"].value_or(true) ? 1 : 0);
   if (grains_start(known->second, start["count"].value_or(200), start["seed"].value_or(1),
                    start["friction"].value_or(0.4), start["restitution"].value_or(0.5)) == 0) {
     throw SceneError(lagrain_error());

@@ -11,6 +11,7 @@ int lagrain_real_count();
 const int* lagrain_ints();
 int lagrain_int_count();
 int sign_map(int n, double px, double py, double qx, double qy, double rx, double ry);
+int grains_leap(int on);
 int grains_start(int kind, int n, int seed, double friction, double restitution);
 int grains_step(int count);
 double grains_time();

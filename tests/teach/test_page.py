@@ -237,13 +237,13 @@ def check_keyboard():
     expect(done("[data-build]"), "lifted sites by keys")
     page.open("04_flips.html")
     for _ in range(40):
-        if page.bench("bench.left_") == 0:
+        if page.bench("bench.badLeft") == 0:
             break
         which = page.bench("bench.bad.findIndex((b, k) => b && bench.possible(bench.inner[k]))")
         while page.bench("bench.chosen") != which:
             page.keys("]")
         page.keys(Keys.ENTER)
-    expect(page.bench("bench.left_") == 0, "flips by keys lead to T")
+    expect(page.bench("bench.badLeft") == 0, "flips by keys lead to T")
     page.open("05_space.html")
     Select(page.find(".controls select")).select_by_value("2")
     page.keys(Keys.ENTER, Keys.ARROW_LEFT)

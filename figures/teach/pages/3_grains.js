@@ -16,7 +16,8 @@ class GrainsBench extends Bench {
     this.show = new Set(start.show ?? ['forces']);
     this.settings = { count: start.count ?? 200, friction: start.friction ?? 0.4,
                       restitution: start.restitution ?? 0.5, follow: start.follow ?? true,
-                      skin: start.skin ?? 1.3, certify: start.certify ?? true };
+                      skin: start.skin ?? 1.3, certify: start.certify ?? true,
+                      leap: start.leap ?? true };
     this.tilt = 0;
     this.slowness = 1;
     this.stage = new Stage(this.canvas, start.box ?? [-0.05, -0.05, 1.05, 1.05]);
@@ -32,13 +33,14 @@ class GrainsBench extends Bench {
 
   /** The library holds the grains of one bench at a time. */
   restart() {
-    const { count, friction, restitution, follow, skin, certify } = this.settings;
+    const { count, friction, restitution, follow, skin, certify, leap } = this.settings;
     GrainsBench.current?.run(false);
     GrainsBench.current = this;
     this.attempt(() => {
       this.library.call('grains_follow', follow ? 1 : 0);
       this.library.call('grains_skin', skin);
       this.library.call('grains_certify', certify ? 1 : 0);
+      this.library.call('grains_leap', leap ? 1 : 0);
       this.library.call('grains_start', kKinds[this.start.kind ?? 'pour'], count,
                         this.start.seed ?? 1, friction, restitution);
       this.turn();

@@ -126,11 +126,11 @@ class FlipsBench extends Bench {
       else join(a, b, { stroke: hue.ink, width: 3, dash: [1, 6] });
     });
     this.sites.forEach(([x, y], i) => stage.text(x, y, String(i), hue.ink));
-    this.left_ = this.bad.filter(Boolean).length;
-    this.stuck = this.left_ > 0 && !this.inner.some((e, k) => this.bad[k] && this.possible(e));
-    this.table([['flips', this.flips], ['bad edges', this.left_],
+    this.badLeft = this.bad.filter(Boolean).length;
+    this.stuck = this.badLeft > 0 && !this.inner.some((e, k) => this.bad[k] && this.possible(e));
+    this.table([['flips', this.flips], ['bad edges', this.badLeft],
                 ['least that can do', this.start.least ?? '–']]);
-    this.why.textContent = this.left_ === 0
+    this.why.textContent = this.badLeft === 0
         ? `No edge is bad: this is the regular triangulation, after ${this.flips} flips.`
         : this.stuck ? 'No bad edge can be flipped: flips are stuck.' : '';
     this.changed();
