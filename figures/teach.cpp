@@ -12,7 +12,7 @@
 #include <lagrain/paint.hpp>
 #include <lagrain/words.hpp>
 
-#include <toml++/toml.h>
+#include "toml_library.hpp"
 
 #include <algorithm>
 #include <array>

@@ -5,7 +5,7 @@
 
 #include <lagrain/display_list.hpp>
 
-#include <toml++/toml.h>
+#include "toml_library.hpp"
 
 #include <string>
 #include <vector>

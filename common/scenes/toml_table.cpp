@@ -139,23 +139,6 @@ void expect_shallow(std::string_view text, const std::string& name) {
   }
 }
 
-/// toml++ 3.3 has undefined behaviour where one of the letters U+FB26 to U+FEFE stands outside of
-/// quotes: is_non_ascii_horizontal_whitespace does not expect them. (It was found by fuzzing.)
-void expect_known_letters(std::string_view text, const std::string& name) {
-  const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
-  for (std::size_t at = 0; at + 2 < text.size(); ++at) {
-    if (byte(at) != 0xEF) continue;
-    const unsigned letter = 0xF000U | (byte(at + 1) & 0x3FU) << 6 | (byte(at + 2) & 0x3FU);
-    if (letter < 0xFB26 || letter > 0xFEFE) continue;
-    const auto line =
-        1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
-    throw SceneError(
-        name + ":" + std::to_string(line) +
-        ": a presentation form of a letter (U+FB26 to U+FEFE) cannot be read; write the "
-        "letter itself");
-  }
-}
-
 }  // namespace
 
 std::string TomlFile::place_of(const toml::source_region& at) const {
@@ -178,7 +161,6 @@ void TomlFile::expected(const toml::node& node, const std::string& path,
 
 toml::table parse_toml(std::string_view text, const std::string& name) {
   expect_shallow(text, name);
-  expect_known_letters(text, name);
   try {
     return toml::parse(text, std::string_view(name));
   } catch (const toml::parse_error& error) {

@@ -9,9 +9,8 @@
 #include <lagrain/check.hpp>
 #include <lagrain/vec.hpp>
 
-// Header-only, in the sources of this folder alone: an installed lagrain needs no toml++.
 #define TOML_ENABLE_FORMATTERS 0
-#include <toml++/toml.h>
+#include "toml_library.hpp"
 
 #include <algorithm>
 #include <array>
