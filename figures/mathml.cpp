@@ -20,7 +20,7 @@ class Formula {
   explicit Formula(std::string_view text) : text_(text) {}
 
   std::string whole() {
-    const std::string inside = row('\0');
+    std::string inside = row('\0');
     if (at_ < text_.size()) fail("a brace too many");
     return inside;
   }
@@ -57,7 +57,7 @@ class Formula {
     skip_blanks();
     if (ended() || text_[at_] != '{') fail("expected {");
     ++at_;
-    const std::string inside = row('}');
+    std::string inside = row('}');
     if (ended()) fail("a { without }");
     ++at_;
     return inside;

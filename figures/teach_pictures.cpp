@@ -276,7 +276,7 @@ DisplayList picture_of_grains(const toml::table& start) {
 DisplayList picture_of_signs(const toml::table& start) {
   constexpr int kSide = 128;
   constexpr double kPixels = 200, kGap = 14;  // [pt]
-  const auto point = [&](const char* key, Row otherwise) {
+  const auto point = [&](const char* key, const Row& otherwise) {
     const Row row = row_of(start, key);
     return row.size() == 2 ? row : otherwise;
   };

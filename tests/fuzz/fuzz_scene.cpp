@@ -23,6 +23,8 @@ void read(const std::string& text) {
 
 }  // namespace
 
+// libFuzzer knows it by this name.
+// NOLINTNEXTLINE(readability-identifier-naming)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(bytes), size);
   read<2>(text);

@@ -110,6 +110,8 @@ void go_on(Input input) {
 
 }  // namespace
 
+// libFuzzer knows it by this name.
+// NOLINTNEXTLINE(readability-identifier-naming)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   go_on<2>({bytes, size});
   go_on<3>({bytes, size});

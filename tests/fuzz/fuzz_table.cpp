@@ -15,6 +15,8 @@
 
 using namespace lagrain;
 
+// libFuzzer knows it by this name.
+// NOLINTNEXTLINE(readability-identifier-naming)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   static const test::Folder folder;
   std::filesystem::create_directories(folder.path);

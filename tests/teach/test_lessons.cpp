@@ -146,9 +146,9 @@ TEST_SUITE("lessons") {
         {"first_miss", 5},
         {"steps_needed", 50},
     };
-    for (const auto& [name, value] : right) {
-      CAPTURE(name);
-      CHECK(relative_error(lesson_number(name), value) < 1e-11);
+    for (const auto& number : right) {
+      CAPTURE(number.first);
+      CHECK(relative_error(lesson_number(number.first), number.second) < 1e-11);
     }
     CHECK(lesson_number("wrong_signs") > 1000);
     CHECK(lesson_number("verlet_error") < 0.1);  // [%]
